@@ -55,8 +55,8 @@ public:
   /// names (separated by blanks), which tests use.
   bool HasExtension(const std::string& name) const;
 
-  /// Limit, in bytes, for all buffers on this device together: the memory that OpenCL reports, but on a CPU at least
-  /// three quarters of the machine's memory (PoCL reports only a part of what is available).
+  /// Limit, in bytes, for all buffers on this device together. It is the memory that OpenCL reports. On a CPU it is at
+  /// least three quarters of the machine's memory, because PoCL reports less than is available.
   std::size_t MemoryLimit() const { return this->Memory.Limit(); }
   std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest size of a single buffer, bytes
   /// Whether the budget places large arrays in host memory (MemoryBudget::hostFrom), so that sweeps must stream them.

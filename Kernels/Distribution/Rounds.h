@@ -23,8 +23,8 @@ struct RoundsTraffic
   int rounds = 0;        ///< number of rounds of tracing and exchange, until no photon, ray or beam was left
 };
 
-/// Traces travellers (photons, rays, or beams of a lamp) through a distributed grid in rounds: each rank follows its
-/// travellers to the end of its block, then sends them to the neighbouring ranks whose blocks they enter.
+/// Traces travellers (photons, rays, or beams of a lamp) through a distributed grid in rounds. In each round, a rank
+/// follows its travellers to the end of its block, then sends them to the neighbouring ranks whose blocks they enter.
 ///
 /// A traveller type needs a free function `const int* WhereIs(const Traveller&)`, which returns the indices of the
 /// voxel of the whole grid in which the traveller continues.
@@ -44,8 +44,8 @@ public:
   {
   }
 
-  /// Function that traces the travellers (photons, rays or beams) that arrived in a round (in the first round: those
-  /// that start in this block), and returns the travellers that continue in other blocks.
+  /// Function that traces the travellers (photons, rays or beams) that arrived in a round; in the first round, those
+  /// that start in this block. Returns the travellers that continue in other blocks.
   template <class OnItsWay>
   using Follow =
     std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;

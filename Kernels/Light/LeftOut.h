@@ -41,28 +41,29 @@ extern const char* const
 /// Text if "By octant" was requested for the setting Source but cannot be used in this scene.
 extern const char* const NotByOctant;
 extern const char* const NotSideBySide; ///< text if the device does not run two queues concurrently
-/// Text that a part of the voxels does not scatter, so that no source is computed for them.
+/// Text stating which part of the voxels does not scatter, so that no source is computed for them.
 std::string EmptyVoxels(double part);
-/// Text that a part of the voxels has no medium, so that no angular moments of their light are computed.
+/// Text stating which part of the voxels has no medium, so that no angular moments of their light are computed.
 std::string EmptyMoments(double part);
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
-/// Text that many directions carry no incident light.
+/// Text stating that many directions carry no incident light.
 /// @param lit  fraction of the rays that carry incident light
 std::string DarkDirections(double lit);
-/// Text that channels without sources are dark, and were not solved.
+/// Text stating that channels without sources are dark, and were not solved.
 std::string DarkChannels(int dark, int channels);
 std::string MirrorImages(int classes, int directions);
-/// Text that photons of some light sources would all miss the volume.
+/// Text stating that photons of some light sources would all miss the volume.
 std::string SourcesBesideVolume(int beside, int sources);
-/// Text that a part of the samples emits no photon, because it would miss the volume.
+/// Text stating which part of the samples emits no photon, because it would miss the volume.
 std::string PhotonsBesideVolume(double part);
-/// Text that a phase function has fewer terms than were asked for, because the eigenvalues of the other terms are 0.
+/// Text stating that a phase function has fewer terms than were asked for, because the eigenvalues of the other terms
+/// are 0.
 std::string TermsOfZero(int terms, int asked);
-/// Text that the scene varies along one axis only and was therefore solved as plane-parallel layers.
+/// Text stating that the scene varies along one axis only and was therefore solved as plane-parallel layers.
 /// @param polarNodes  number of polar cosines of that solve
 std::string TwoAxes(int polarNodes);
-/// Text that plane-parallel layers were solved with `perFace` directions per cube face instead of the number that was
-/// set.
+/// Text stating that plane-parallel layers were solved with `perFace` directions per cube face instead of the set
+/// number.
 std::string DirectionsAlongSlab(int perFace);
 }
 }

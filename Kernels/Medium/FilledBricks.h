@@ -13,8 +13,8 @@ namespace tyndall
 /// may reach beyond the grid), and for each brick whether it is filled, i.e. has a voxel with non-zero sigma_t or
 /// emission.
 ///
-/// Determined in one pass over the medium's arrays on all cores, together with the checks that every solver makes, so
-/// that a mostly empty medium costs little more than one read. The active-voxel mask of a file is not used: after a
+/// Determined in one pass over the medium's arrays, on all cores and together with the checks that every solver makes.
+/// A mostly empty medium thus costs little more than one read. The active-voxel mask of a file is not used: after a
 /// filter that changes the arrays it would be wrong and lose light, and a medium that was not read from a file has no
 /// such mask.
 struct FilledBricks

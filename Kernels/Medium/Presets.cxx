@@ -23,8 +23,10 @@ constexpr Rgb OfAllColours(double g)
   return { g, g, g };
 }
 
-/// Cloud, by Slingo's parametrisation for the band 0.25 to 0.69 um at effective radius r = 10 um: extinction a + b / r
-/// = 0.02817 + 1.305 / 10 m^2/g, 1 - albedo = c + d r = -5.62e-8 + 1.63e-7 * 10, g = e + f r = 0.829 + 0.002482 * 10.
+/// Cloud, by Slingo's parametrisation for the band 0.25 to 0.69 um at effective radius r = 10 um:
+///   extinction = a + b / r = 0.02817 + 1.305 / 10 m^2/g
+///   1 - albedo = c + d r = -5.62e-8 + 1.63e-7 * 10
+///   g          = e + f r = 0.829 + 0.002482 * 10
 MediumPreset Cloud()
 {
   const double extinction = 0.02817 + 1.305 / 10.0; // 1/m
@@ -45,8 +47,9 @@ MediumPreset Fog()
     "data file of fog" };
 }
 
-/// Smoke: absorption 7.5 m^2/g at 550 nm, proportional to 1 / wavelength. Scattering is extinction, 8.7 m^2/g at 633
-/// nm, minus absorption there, equal in all channels, and isotropic because no mean cosine was measured.
+/// Smoke. Absorption is 7.5 m^2/g at 550 nm, proportional to 1 / wavelength. Scattering is the extinction, 8.7 m^2/g at
+/// 633 nm, minus the absorption at 633 nm. It is equal in all channels, and isotropic because no mean cosine was
+/// measured.
 MediumPreset Smoke()
 {
   const double scattering = 8.7 - 7.5 * 550.0 / 633.0;

@@ -413,8 +413,8 @@ __kernel void begin_errors(const __global float* noise, int4 size, __global floa
 }
 
 #if DIRECTIONS
-// Factor by which a flux (x, y, z) is multiplied to give the mean direction of light whose channels add up to `total`,
-// so that its length is at most 1; 0 where there is no light.
+// Factor that converts a flux (x, y, z) to the mean direction of light. `total` is the sum of the light's channels. The
+// factor limits the direction's length to 1, and is 0 where there is no light.
 inline real direction_of(real total, real x, real y, real z)
 {
   const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);

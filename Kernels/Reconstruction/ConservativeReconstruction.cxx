@@ -106,7 +106,7 @@ private:
 /// together with the noise counts as error.
 constexpr float Honesty = 0.4f;
 
-/// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
+/// Number of voxels in the first launch of a kernel. Its run time determines the size of later launches.
 constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1) << 22;
 
 ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>& size, int width)

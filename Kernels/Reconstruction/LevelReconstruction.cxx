@@ -18,7 +18,7 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
+// Number of voxels in the first launch of a kernel. Its run time determines the size of later launches.
 constexpr std::size_t FirstPart = std::size_t(1) << 18;
 
 /// Methods by which the pyramids are built: of light, of photon counts, of photon weights.

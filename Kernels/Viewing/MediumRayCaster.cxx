@@ -31,8 +31,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      // Only voxels at the box's faces are examined: all of a row that lies on a y or z face, otherwise the first and
-      // last voxel of the row, which lie on the x faces.
+      // Only voxels at the box's faces are examined. A row that lies on a y or z face is examined completely, other
+      // rows at their first and last voxels, which lie on the x faces.
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1);
       for (int i = 0; i < size[0]; i += step)
       {

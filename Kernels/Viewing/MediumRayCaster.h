@@ -46,9 +46,9 @@ namespace tyndall
 /// centres. With shadow rays all other light is taken to scatter isotropically. Shadow rays are straight, also through
 /// glass.
 ///
-/// Where the voxels at a face of the box are thicker than a mean free path, rays that enter through this face receive
-/// the outgoing radiance that the solver computed there (`surface`), see SurfaceLight in Backdrop.cxx. This applies to
-/// straight rays that show all light, without shadow rays, mean directions or a table.
+/// Where the voxels at a face of the box are optically thick, rays that enter through the face receive the solver's
+/// outgoing radiance at the face (`surface`), see SurfaceLight in Backdrop.cxx. This applies to straight rays that show
+/// all light, without shadow rays, mean directions or a table.
 ///
 /// Every term uses the medium's own sigma_s and sigma_t, even if the solver worked with sigma_s (1 - g).
 /// `scattered_radiance`, which solvers store for chosen directions, is for analysis and is not used here: a camera
@@ -74,10 +74,10 @@ namespace tyndall
 /// (110)) use the indices five voxels before and behind the surface; a sheet thinner than that reflects as if it were
 /// thicker.
 ///
-/// Ground. A ray that leaves the box through a reflecting face (faceAlbedo) sees, instead of the background, albedo /
-/// pi times the outgoing partial current at the face (facePower), interpolated between the centres of the face's cells
-/// (Eq. (111a)). The ground is part of the background: showBackground switches it off, alpha and depth ignore it, and
-/// it is invisible from outside.
+/// Ground. A ray that leaves the box through a reflecting face (faceAlbedo) receives light from the face instead of the
+/// background: albedo / pi times the outgoing partial current (facePower), interpolated between the centres of the
+/// face's cells (Eq. (111a)). The ground is part of the background: showBackground switches it off, alpha and depth
+/// ignore it, and it is invisible from outside.
 ///
 /// Table. Where a ray leaves the box through tableFace it sees
 ///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,
@@ -107,8 +107,8 @@ public:
   MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
   /// Changes settings that need no new device data, so that the caster can be reused while medium, light and
-  /// illumination stay the same: imageSize, stepSize, backgroundColor, minimumTransmittance, the settings of the
-  /// surface, tableColor and tableReflectance.
+  /// illumination stay the same. These settings are imageSize, stepSize, backgroundColor, minimumTransmittance, the
+  /// settings of the surface, tableColor and tableReflectance.
   /// @return false, with nothing changed, if any other setting differs: a new caster is needed then
   /// @throws InvalidInput as the constructor
   bool Adopt(const ViewSettings& settings);

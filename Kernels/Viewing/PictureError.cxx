@@ -184,7 +184,8 @@ void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLigh
     const double ofRays = PartOfDifference * (fine - coarse.radiance[i]);
     error[i] = static_cast<float>(std::hypot(ofRays, knowsLight ? ofLight.radiance[i] : 0.0));
   }
-  // as for the error of fluence: smoothed over neighbouring blocks, and in proportion to the radiance within a block
+  // The error is smoothed over neighbouring blocks of pixels, and is proportional to the radiance within a block, like
+  // the error of fluence.
   Domain domain(pixels);
   LightField shown;
   shown.channels = 3;

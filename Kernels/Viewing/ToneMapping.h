@@ -15,9 +15,9 @@ enum class ToneCurve
 
 struct ToneMapping
 {
-  /// Factor applied to radiance before the tone curve; 0: chosen such that the picture's logarithmic mean luminance
-  /// becomes 0.18, the value of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction",
-  /// equations 1 and 2).
+  /// Factor applied to radiance before the tone curve. With 0, the factor is chosen such that the picture's logarithmic
+  /// mean luminance becomes 0.18, the value of a photographer's grey card (Reinhard et al. 2002, "Photographic tone
+  /// reproduction", equations 1 and 2).
   double exposure = 0.0; ///< range [0, 1e30]
   ToneCurve curve = ToneCurve::Filmic;
 };
@@ -54,9 +54,9 @@ double ExposedAs(double shown, ToneCurve curve);
 float ShownValue(float exposed, ToneCurve curve);
 
 /// Converts a picture to eight bits per channel, red, green, blue and alpha, for an sRGB display (IEC 61966-2-1).
-/// Colours are not multiplied by alpha: composited over black, the picture shows the tone-mapped radiance. A pixel
-/// brighter than white at its alpha, such as thin smoke in bright light, is given the alpha of its brightest channel:
-/// it then hides more of the background than the medium does.
+/// Colours are not multiplied by alpha: composited over black, the picture shows the tone-mapped radiance. Some pixels
+/// are brighter than white at their alpha, such as thin smoke in bright light. They are given the alpha of their
+/// brightest channel, and then hide more of the background than the medium does.
 /// @param radiance  3 per pixel, W / (length^2 sr)
 /// @param alpha  one per pixel in [0, 1]; empty: opaque
 std::vector<std::uint8_t> ToneMap(

@@ -43,7 +43,7 @@ struct SpreadSource
   }
 
   /// Mean weight of the samples, 1 up to statistical fluctuation. Weights and powers are divided by it, so that the
-  /// powers of a directional light sum exactly to the power that reaches the volume.
+  /// powers of a directional light sum to the power that reaches the volume.
   double MeanWeight(const SampleSequence& samples, std::size_t count) const
   {
     double sum = this->sampler ? 0.0 : static_cast<double>(count);

@@ -81,8 +81,8 @@ struct PilotPhotons
   std::vector<std::array<int, 2>> origins;
 };
 
-/// Emits the pilot photons of every light, the environment and the sky, but not of the faces: one at a random
-/// position in each cell of a square grid on the photon plane (Pfeuti 2009, section 3.2.2).
+/// Emits the pilot photons of every light, the environment and the sky, but not of the faces. One photon starts at a
+/// random position in each cell of a square grid on the photon plane (Pfeuti 2009, section 3.2.2).
 /// @param edge  number of cells along an edge of the grid, at least 1
 /// @throws InvalidInput if the illumination is not valid
 std::vector<PilotPhotons> EmitPilots(

@@ -21,9 +21,9 @@ constexpr double SteepAtLeast = 0.25;
 constexpr double DimBelow = 0.5; ///< luminance, relative to the median, below which a lit cell counts as dark
 /// An importance map is used only if at least this fraction of the lit cells is chosen for dense sampling
 constexpr double FewCells = 0.01;
-/// A light needs no map if the product of two numbers is below this: the standard deviation of the map of its chosen
-/// cells (mean 1), and the fourth root of the fraction of lit cells that are chosen. Measured products: 0.2 to 0.46 for
-/// thin or thick fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
+/// A light needs no map if a product is below this value. Its factors are the standard deviation of the map of the
+/// chosen cells (mean 1), and the fourth root of the fraction of lit cells that are chosen. Measured products: 0.2 to
+/// 0.46 for thin or thick fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
 constexpr double EvenMap = 0.5;
 
 constexpr int LargestEdge = 1024; ///< maximum number of map cells along an edge

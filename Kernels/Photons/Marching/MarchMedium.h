@@ -77,7 +77,7 @@ public:
     std::vector<float> extinction;
     std::vector<float> sigmaA, sigmaS; ///< 1/length, [record][component]
   };
-  /// Packs the coefficients of a medium by records.
+  /// Packs the coefficients of a medium in the layout by bricks, record after record.
   /// @param diagonal  length of a voxel's diagonal
   /// @param channels  number of extinction channels
   /// @param aComponents, sComponents  components of sigma_a and sigma_s in the medium, or 0 to leave them out
@@ -174,8 +174,8 @@ public:
   PhotonBricks bricks;       ///< layout of all arrays by bricks; without bricks, arrays are stored voxel by voxel
 
   Buffer<float> sigmaA, sigmaS; ///< 1/length, voxel by voxel or by records
-  /// Optical thickness of voxel diagonals, [channel][voxel of the padded grid], as pack_extinction of PhotonMedium.cl
-  /// stores it, or [channel][record of PhotonBricks].
+  /// Optical thickness of voxel diagonals. Voxel by voxel: [channel][voxel of the padded grid], as pack_extinction of
+  /// PhotonMedium.cl stores it. By bricks: [channel][record of PhotonBricks].
   Buffer<float> sigma;
   Buffer<float> coefficients; ///< coefficients of the spline of n^2, SquaredIndex.cl
   /// Octree nodes of the voxels of block.known, as pack_nodes of PhotonMedium.cl stores them; after SetNodes those of

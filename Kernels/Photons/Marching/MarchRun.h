@@ -185,7 +185,7 @@ struct MarchTurns
   /// Whether photons march on a separate command queue, concurrently with the processing of light (`meanwhile`). False:
   /// one queue for both.
   bool sideBySide = true;
-  /// Called once before the first turn.
+  /// Called once before the first turn (launch over a limited number of path segments).
   /// @param photons  the packed photons
   /// @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
@@ -198,7 +198,7 @@ struct MarchTurns
   TurnTimes times; ///< output: device times of the march
 };
 
-/// Marches photons to their ends in turns (MarchTurns).
+/// Marches photons to their ends in turns, launches over a limited number of path segments (MarchTurns).
 /// @param show  queues the conversion of the sums accumulated so far to fluence
 /// @throws DeviceError if the states of the photons do not fit into the device's memory; Aborted: the sums then hold
 ///   only a part of the paths

@@ -69,7 +69,7 @@ typedef struct
 {
   int face;      ///< face through which the photon left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere
   int crossings; ///< number of path segments on which the photon deposited light
-  /// Counter: steps that the path integrator has taken for this photon, in all blocks together; 0: straight path
+  /// Number of steps that the path integrator has taken for this photon, in all blocks together; 0: straight path
   int steps;
 #ifdef __OPENCL_C_VERSION__
   float power[CHANNELS];
@@ -103,7 +103,7 @@ typedef struct
   int batch;     ///< index of the photon's batch
   int counted;   ///< coarse cell in which the photon was last counted
   int crossings; ///< number of path segments on which the photon deposited light
-  /// Counter: steps that the path integrator has taken for this photon so far, in all blocks; 0: straight path
+  /// Number of steps that the path integrator has taken for this photon so far, in all blocks; 0: straight path
   int steps;
   float power[3]; ///< remaining power, in units of PackedPhotons::unit
   float owed[3];  ///< Kahan compensation of rounding errors in `power`

@@ -72,7 +72,7 @@ public:
   {
   }
 
-  /// Queues the march of one turn, and returns the event of the kernel.
+  /// Queues one turn (launch over a limited number of path segments), and returns the event of the kernel.
   /// @param first  whether photons start in this turn
   cl::Event Turn(const cl::CommandQueue& queue, bool first, const TurnSchedule& turn)
   {

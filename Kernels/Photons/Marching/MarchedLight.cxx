@@ -346,9 +346,9 @@ void Widen(std::vector<double>& values)
 }
 
 // One photon of each group of `batches` consecutive photons is chosen at random. A fixed stride would not do:
-// low-discrepancy samples depend on the digits of their indices. For example, every sixteenth index has the same last
-// four binary digits, which are the leading digits of Hammersley's points, so that all photons of a batch would start
-// in one part of the light.
+// low-discrepancy samples depend on the digits of their indices. For example, all multiples of sixteen have the same
+// last four binary digits. These are the leading digits of Hammersley's points, so that all photons of a batch would
+// start in one part of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
   std::mt19937 random; // with its default seed, so that every batch draws the same numbers

@@ -463,8 +463,8 @@ void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, Star
   packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
 }
 
-/// Computes the mark of each photon, the 64-bit integer that it adds to each voxel that it enters: a count of 1 in the
-/// upper bits, and the photon's weight, in units, in the lower bits.
+/// Computes the mark of each photon, a 64-bit integer that the photon adds to each voxel on its path. The upper bits
+/// are a count of 1, the lower bits the photon's weight in units.
 /// @param largest, count  largest weight, and number, of the photons of all ranks
 /// @throws InvalidInput if there are more photons than voxels can count
 void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)

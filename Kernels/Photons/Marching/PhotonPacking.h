@@ -53,7 +53,7 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
 /// fainter channel has a smaller unit
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger);
 
-/// Rounds power to whole units, so that sums do not depend on the order of their terms.
+/// Rounds power to whole units: sums of whole units do not depend on the order of their terms.
 inline std::int64_t WholeUnits(float power)
 {
   return static_cast<std::int64_t>(static_cast<double>(power) + 0.5);
@@ -104,7 +104,7 @@ struct StartingPhotons
 StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
   bool coloured, double depositsAtMost, const MarchSettings& settings);
 
-/// Collects the photons with the given indices on every rank, in ascending order of indices.
+/// Gives every rank those photons of all ranks that have the given indices, in ascending order of indices.
 /// @param chosen  indices among all photons, ascending
 std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
   const PlaceOfShare& place, const std::vector<std::size_t>& chosen);

@@ -353,7 +353,7 @@ private:
   const bool VariedG;
   Buffer<float>& Index;
   RefractiveMedium& Result;
-  /// Covered fraction, coefficients and g of the voxels of one slab (those computed at a time).
+  /// Covered fraction, coefficients and g of the voxels of one slab, the part of the box that is computed at a time.
   Buffer<float> Covered, SigmaA, SigmaS, G;
   cl::Kernel AddObject, AddOutside;
 };

@@ -93,8 +93,8 @@ bool IsConstant(const Domain& domain, const float* values)
 ///
 /// A voxel's level is the largest k for which its node satisfies max - min <= tolerance for every quantity. The node of
 /// level k is the cube of 2^k voxels per edge that begins at multiples of 2^k. The level is 0, a single voxel, if there
-/// is no such k. A grid whose size is not a power of two is treated as if its last voxel were repeated, so that the
-/// range of a node is that of its voxels inside the grid.
+/// is no such k. A grid whose size is not a power of two is treated as if its last voxel were repeated: only voxels
+/// inside the grid count for the range of a node.
 class OctreePyramid
 {
 public:

@@ -24,8 +24,8 @@ public:
   /// @throws InvalidInput if a mesh is so large relative to the grid that the distance of samples would be below a unit
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
-  /// This lattice with its origin moved to the lower corner of a voxel, for voxelising a box of the grid: the box's
-  /// voxels are bitwise equal to those of the entire grid.
+  /// This lattice with its origin moved to the lower corner of a voxel, for voxelising a box of the grid. The voxels of
+  /// the box then obtain bitwise the same values as if the entire grid were voxelised.
   SampleLattice From(const std::array<int, 3>& voxel) const;
 
   int Samples() const { return this->SamplesOfVoxel; } ///< number of fine voxels per edge of a voxel

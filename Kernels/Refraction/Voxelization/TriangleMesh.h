@@ -16,7 +16,7 @@ struct TriangleMesh
   std::vector<std::array<double, 3>> points;
   std::vector<std::array<int, 3>> triangles;
 
-  /// Index of each point in the user's mesh, for messages; empty: the points' own indices.
+  /// Index of each point in the user's mesh, for messages. Empty: the indices in `points` are the user's.
   std::vector<std::size_t> pointNumbers;
 };
 
@@ -60,9 +60,9 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
 /// disagree.
 int Orientation(const MeshTopology& topology);
 
-/// Describes the irregularities of a closed mesh, one sentence each: triangles without area, triangles that disagree
-/// about the outside, normals that point inwards, and samples whose winding number is neither 0 nor 1 (for example
-/// where the mesh intersects itself).
+/// Describes the irregularities of a closed mesh, one sentence each. These are triangles without area, triangles that
+/// disagree about the outside, normals that point inwards, and samples with a winding number other than 0 or 1 (for
+/// example where the mesh intersects itself).
 std::vector<std::string> Oddities(
   const MeshTopology& topology, const WindingNumbers& windings, const std::string& name, const Grid& grid, int samples);
 }

@@ -101,12 +101,12 @@ struct CountedVoxels
 /// the surface crosses columns along x, y and z (SurfaceFraction). A voxel that the surface does not touch is entirely
 /// inside or outside.
 ///
-/// Results for a voxel do not depend, to the last bit, on the box of the grid that is requested, with one exception:
-/// in the outermost voxels of a box that ends within the grid, whether a crossing enters or leaves the mesh is
-/// decided without the sample beyond the box, which matters for features thinner than a sample.
+/// Results for a voxel do not depend, to the last bit, on the box of the grid that is requested, with one exception. In
+/// the outermost voxels of a box that ends within the grid, the sample beyond the box is not known when the sign of a
+/// crossing (entering or leaving the mesh) is decided. This matters for features thinner than the distance of samples.
 ///
 /// @param take  callback that receives the counts slab by slab, and within a slab mesh by mesh from the last to the
-///   first, so that device memory does not grow with the size of the grid or the number of meshes
+///   first. Device memory therefore does not grow with the size of the grid or the number of meshes
 /// @return the winding numbers of each mesh at the samples of counted.own. Where they are neither 0 nor 1, samples
 ///   with an odd winding number count as inside. If the orientation of a mesh is 0, its winding numbers are unknown
 ///   and returned as those of a closed, consistently oriented mesh

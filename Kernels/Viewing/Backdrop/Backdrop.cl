@@ -136,7 +136,8 @@ inline rgb ground_or_behind(
   return light;
 }
 
-// Correction for light at the surface of optically thick voxels, added to rays where they enter the box.
+// Correction for light at the surface of optically thick voxels (SurfaceLight in Backdrop.cxx), added to rays where
+// they enter the box.
 
 // Lagrange basis polynomial at the cosine x that is 1 at the node a and 0 at b, c and d; the nodes are the cosines
 // 0.05, 0.25, 0.6 and 1 (SurfaceCosines in BoxFaces.h).

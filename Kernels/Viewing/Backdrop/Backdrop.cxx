@@ -261,9 +261,9 @@ std::array<double, 4> Missing(
   return missing;
 }
 
-/// Correction for rays that enter the box through optically thick voxels (numerics.md, Eq. (112)): the outgoing
-/// radiance that the solver computed there (`surface`), minus the radiance that the march computes there by
-/// interpolation of the light between the centres of thick voxels. The correction sets in at an optical thickness
+/// Correction for rays that enter the box through optically thick voxels (numerics.md, Eq. (112)). It is the outgoing
+/// radiance that the solver computed at the surface (`surface`), minus the radiance that the march of rays obtains by
+/// interpolating the light between the centres of thick voxels. The correction sets in at an optical thickness
 /// ThickAtSurface of the voxel and is complete at twice this thickness. It applies only where the medium behind is some
 /// mean free paths thick, since it assumes the light of a half-space.
 ///

@@ -18,8 +18,8 @@ namespace tyndall
 /// @param face  0 to 5: -x, +x, -y, +y, -z, +z
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
-/// Radiance that rays receive where they leave or enter the medium: that of the environment or sky, of reflecting faces
-/// of the box (the ground), and of the table, a plane at the face ViewSettings::tableFace with diffuse and specular
+/// Radiance that rays receive where they leave or enter the medium. Its sources are the environment or sky, reflecting
+/// faces of the box (the ground), and the table, a plane at the face ViewSettings::tableFace with diffuse and specular
 /// reflectance. Also holds the correction for light at the surface of optically thick voxels.
 class Backdrop
 {

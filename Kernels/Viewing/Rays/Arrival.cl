@@ -2,8 +2,8 @@
 // and RayRounds.cl.
 //
 // Along a bent ray L / n^2, radiance over squared refractive index, changes only by emission, scattering and absorption
-// (numerics.md, Eq. (109)): sources and backgrounds are divided by the local n^2, and the picture is multiplied by n^2
-// at the ray's entry.
+// (numerics.md, Eq. (109)). Sources and backgrounds are therefore divided by the local n^2, and the picture is
+// multiplied by n^2 at the ray's entry.
 
 #pragma once
 #include "Viewing/Backdrop/Backdrop.cl"

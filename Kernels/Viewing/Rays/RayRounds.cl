@@ -1,7 +1,7 @@
 // Marches rays through one block of a larger grid, each to the block's boundary. The rays may bend, be reflected by a
-// surface or be mirrored by a table. A ray's entry into the domain is computed by the block that contains the entry
-// point, its exit by the block that contains the exit point, and each step by the block that contains the step's
-// midpoint. Positions are in voxels of the whole grid, so that the results equal those of a serial run.
+// surface or be mirrored by a table. The block that contains the midpoint of a step computes this step. Likewise, the
+// blocks that contain the entry point and the exit point compute the ray's entry into the domain and its exit.
+// Positions are in voxels of the whole grid, so that the results equal those of a serial run.
 //
 // Macros set by the host:
 //   ROUNDS  1

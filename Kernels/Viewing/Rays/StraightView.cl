@@ -67,8 +67,8 @@ __attribute__((always_inline)) inline void march_straight(const ViewInfo* v, con
   }
 }
 
-// Adds the radiance from behind the medium, attenuated by the transmittance: that of a reflecting face for rays that
-// leave the box through it, else that of the background.
+// Adds the radiance from behind the medium, attenuated by the transmittance. Rays that leave the box through a
+// reflecting face receive the face's radiance, other rays the background's.
 //   packet       section of the rays in the medium
 //   d            unit vectors along the rays, away from the eye
 //   sees_behind  rays that leave the domain without meeting an opaque surface; other rays receive nothing
@@ -126,7 +126,6 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   march_straight(&v, &scene, bricks, records, packet, seen.d, &l, &half_way);
 
-  // Adds the background, and writes the picture.
   const real left = mean_left(l);
   if (v.has.z)
   {

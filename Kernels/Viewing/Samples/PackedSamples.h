@@ -66,7 +66,7 @@ public:
   PackedSamples(Device& device, const FilledBricks& filled, const SceneOnDevice& scene, const ViewTraits& traits,
     const BlockOfScene* block);
 
-  /// Packs the samples for one purpose.
+  /// Packs samples of the medium and its light for one purpose: shadow rays, or camera rays.
   /// @param direct, diffuse  light from SeenSources; read if `what` is for camera rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
 

@@ -11,8 +11,8 @@
 // pictures rendered with and without skipping of bricks would differ in the last bit.
 //
 // Positions are in voxels from the box's lower corner: voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1]. Arrays
-// named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels: interpolation needs
-// no bounds checks, and the medium ends at the faces of the box, not half a voxel inside.
+// named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels. Interpolation
+// therefore needs no bounds checks, and the medium ends at the faces of the box, not half a voxel inside.
 
 #pragma once
 #include "Numerics/Numerics.cl"
