@@ -43,7 +43,7 @@ struct VoxelizedMaterials
 /// The two materials of a voxelised medium, taken from voxels entirely inside and entirely outside the mesh.
 /// @param occupancy  fraction of each voxel inside the mesh
 /// @throws InvalidInput if no voxel is entirely inside or outside, voxels of one material differ in a coefficient (as
-/// with noise, or several materials), or the mesh is open
+///   with noise, or several materials), or the mesh is open
 VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Field& occupancy, TriangleMesh&& mesh);
 
 /// The scene that all solvers of a comparison solve. Does not own its arrays.

@@ -45,7 +45,7 @@ private:
 /// @param set  photons per set
 /// @param seconds  time that sets beyond sixteen may take, by NominalSeconds
 /// @param maps  light propagation maps whose uncollided light is used if it does not differ significantly from that of
-/// the photons; null: none
+///   the photons; null: none
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   std::size_t set, double seconds, const LightField* maps, const Monitor& monitor);
 

@@ -262,7 +262,7 @@ std::string VoxelizerOf(const PhotonSetting& setting, const ComparedScene& scene
     PropertiesOf("Inside", scene.mesh->inside.material) + PropertiesOf("Outside", scene.mesh->outside) + " | ";
 }
 
-/// ComparedRun::filters of photons.
+/// The filters that repeat a run of photons, in the format of ComparedRun::filters.
 std::string FiltersOf(ComparedMethod method, const PhotonSetting& setting, const ComparedScene& scene)
 {
   int made = 0; // filters so far

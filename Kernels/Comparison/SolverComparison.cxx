@@ -144,8 +144,8 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   {
     return "its voxels have to be cubes";
   }
-  // Photon methods compute light by photons. So does a lattice run with a varying refractive index, for its uncollided
-  // light.
+  // These methods need photons: the photon methods, and lattice runs with a varying refractive index, whose uncollided
+  // light is computed by photons.
   if (IsOfPhotons(method) || method == ComparedMethod::PhotonsThenMaps || (lattice && scene.BendsLight()))
   {
     const std::string why = scene.WhyNotByPhotons(QuantityOf(method) == ComparedQuantity::Fluence);

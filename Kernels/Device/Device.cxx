@@ -63,7 +63,7 @@ bool IsPocl(const cl::Platform& platform)
 }
 
 /// The devices of a platform.
-/// @throws cl::Error; DeviceError if PoCL finds no folder to write to, in which case it must not be used
+/// @throws cl::Error; DeviceError if PoCL finds no folder to write to; PoCL must then not be used
 std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
 {
   if (IsPocl(platform) && !shared.Cache)

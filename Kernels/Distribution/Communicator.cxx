@@ -112,7 +112,7 @@ std::vector<char> Communicator::TakeOwn(int tag)
 
 /// Combines the values of all ranks in rank order. Rank 0 combines them, and sends the result to all ranks.
 /// @throws InvalidInput on all ranks, if the numbers of values differ: the ranks are then at different points of a
-/// computation, or have different settings
+///   computation, or have different settings
 std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
 {
   if (this->Rank() > 0)

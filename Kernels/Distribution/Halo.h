@@ -49,7 +49,7 @@ public:
   std::vector<std::size_t> CopiedPlaces() const { return PlacesOf(this->Copied); }
   /// Exchanges values that are not stored in arrays over the box `held`. Collective.
   /// @param owned  values at OwnedPlaces(), ordered by the rank that has the copies, and for each rank array after
-  /// array
+  ///   array
   /// @return values at CopiedPlaces(), ordered by the rank that owns the cells, and for each rank array after array
   template <class Value>
   std::vector<Value> Exchange(const std::vector<Value>& owned, int arrays = 1) const;

@@ -20,7 +20,7 @@ public:
   /// @param shared  index of the shared level, the highest one that ranks compute for their own boxes
   /// @param margin  width of the margin, voxels
   /// @param edge  number of voxels, a multiple of the edge of a cell of the shared level. Boxes begin at multiples of
-  /// it, and end at multiples of it or at the grid's end
+  ///   it, and end at multiples of it or at the grid's end
   PyramidBlocks(const Domain& domain, int shared, int margin, int edge);
 
   int Shared() const { return this->SharedLevel; }

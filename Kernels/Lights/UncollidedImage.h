@@ -28,6 +28,6 @@ double PowerLost(const UncollidedImage& image, const Medium& medium, int channel
 
 /// Checks an UncollidedImage.
 /// @throws InvalidInput if a fluence is negative or beyond float, a mean direction is not finite or longer than 1
-/// (names the first such voxel), or an escaped power is not representable as float
+///   (names the first such voxel), or an escaped power is not representable as float
 void Check(const UncollidedImage& image, const Medium& medium);
 }

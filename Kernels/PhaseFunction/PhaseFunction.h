@@ -41,7 +41,7 @@ public:
   /// @param cosines  from -1 to 1 (to 1e-3), ascending or descending
   /// @param values   in any unit, not negative
   /// @throws InvalidInput if a row is not a number, negative or out of order (names the first such row), there are
-  /// fewer than two rows, or the integral is zero
+  ///   fewer than two rows, or the integral is zero
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }

@@ -40,6 +40,6 @@ using RenderForError = std::function<Picture(bool ofLight, const Camera&, const 
 
 /// Sets error and relativeError of a picture.
 /// @param picture  the whole picture
-/// @param knowsLight  whether there is `ofLight`
+/// @param knowsLight  whether the picture `ofLight` is available
 void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLight, const RenderForError& render);
 }

@@ -142,7 +142,7 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
 /// Checks that the photons' powers are in the range of float: not 0, not infinite, and not so small that digits are
 /// lost.
 /// @param parts  number of parts of the emission; each call computes one part. If there are several, `mean` decides
-/// whether power is too small, because photons of other parts may be brighter
+///   whether power is too small, because photons of other parts may be brighter
 /// @param mean   power of all lights over the number of photons of all parts, W
 void CheckPowers(const EmittedPhotons& emitted, int parts, double mean)
 {

@@ -62,7 +62,7 @@ struct PhotonsOnDevice
 {
   /// Uploads photons that start.
   /// @param marks  one 64-bit integer per packed photon, which counts the photon or tells its origin (PhotonMarch.cl);
-  /// empty if photons are not counted
+  ///   empty if photons are not counted
   PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
   PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> arrived, int batches, int channels);
 

@@ -50,7 +50,7 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
 /// @param channel  index of the packed channel
 /// @param colour   power in the requested channel per unit of packed power
 /// @param larger   ratio of the new unit to the old one, a power of two, for a channel that carries all of the power. A
-/// fainter channel has a smaller unit
+///   fainter channel has a smaller unit
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger);
 
 /// Rounds power to whole units: sums of whole units do not depend on the order of their terms.

@@ -28,7 +28,7 @@ inline const int* WhereIs(const PublishedPhoton& photon)
 namespace
 {
 /// Maximum distance in voxels between successive deposits of a step. The next voxel is usually a neighbour. Where the
-/// line runs along an edge of voxels, rounding may select the voxel after it.
+/// line runs along an edge of voxels, rounding may select the voxel behind this neighbour.
 constexpr int VoxelsPassed = 2;
 
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;

@@ -236,7 +236,7 @@ static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* 
 #endif
 }
 
-// Deposits and attenuates the photon's power over a path segment of `way` diagonals.
+// Deposits and attenuates the photon's power over a path segment of `way` voxel diagonals.
 //   sigma  optical thickness of the voxel's diagonal, by scattering and by absorption
 static void leave_stretch(
   const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, ScatterEnd* end)

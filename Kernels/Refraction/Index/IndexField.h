@@ -32,7 +32,7 @@ IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
 /// Checks octree levels.
 /// @param levels  one octree level per voxel of `part`, or null: no octree
 /// @throws InvalidInput if a level is higher than the level of a single node that holds the domain `whole`; names the
-/// first such voxel
+///   first such voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& part, const Grid& whole);
 
 /// Checks the width of the smoothing filter.

@@ -80,7 +80,7 @@ struct RefractiveMedium
 /// The smallest box of cubic voxels that is centred on the solids and leaves a margin on each side. The margin is
 /// `margin` times the longest edge of the solids' bounds, plus one voxel more than the filter reaches.
 /// @throws InvalidInput if there is no solid or none has an extent, a point is not finite (names it), a size is below
-/// 1, or the margin is below 0
+///   1, or the margin is below 0
 Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize);
 
 /// Voxelises solids (Pfeuti 2009, section 3.1.2). Counts the samples of each voxel that lie inside the solids, averages
@@ -133,8 +133,8 @@ VoxelizedPart VoxelizePart(Device& device, const std::vector<Solid>& solids, con
 
 /// Second step of Voxelize: returns the finished medium of a part of the box.
 /// @param all  findings of all parts together. If these are unknown, pass the findings of this part with `empty` false.
-/// Then there is no warning if nothing is inside solids, and the index array is left out only if n is the same in all
-/// solids and outside
+///   Then there is no warning if nothing is inside solids, and the index array is left out only if n is the same in all
+///   solids and outside
 RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const std::vector<Solid>& solids,
   const RefractiveMediumSettings& settings);
 

@@ -46,13 +46,13 @@ struct Octree
 /// not depend on the partition.
 /// @param domain  the grid and its partition; `Domain(grid)` for a serial build
 /// @param medium  medium in this rank's block, on the grid domain.OwnGrid(); its coefficients are used if extinction is
-/// included
+///   included
 /// @param index   refractive index n in this rank's block, one component; finite and above 0
 /// @param device  part of the device's name, as for Device::Find; no device is opened if n and extinction are constant,
-/// as the octree is then a single node
+///   as the octree is then a single node
 /// @throws InvalidInput if a setting, the grid, n (names the first such voxel) or a coefficient is invalid
 /// @throws DeviceError if there is no such device, or its memory is not sufficient: about 7 bytes per voxel of a large
-/// cube
+///   cube
 Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device = {}, const Monitor& monitor = {});
 }

@@ -42,7 +42,7 @@ public:
   const Buffer<cl_float4>& Tables() const { return this->Cells; }
   /// Sets the parameters of background, environment and reflecting faces, and the indices of the lookup tables.
   /// @param sharp  whether the kernel renders the pass for unscattered light of a picture made of angular moments. This
-  /// pass shows only the peaks of the environment
+  ///   pass shows only the peaks of the environment
   void Describe(const ViewSettings& settings, bool sharp, ViewInfo& view) const;
 
 private:

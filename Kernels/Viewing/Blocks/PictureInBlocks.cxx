@@ -38,7 +38,7 @@ Picture Nothing(const std::array<int, 2>& size)
 
 /// Adds the radiance of a ray that has ended to the picture.
 /// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance. In a picture made of
-/// angular moments only the pass for unscattered light does so
+///   angular moments only the pass for unscattered light does so
 void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
 {
   const auto pixel = static_cast<std::size_t>(ray.pixel);

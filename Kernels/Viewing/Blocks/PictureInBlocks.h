@@ -52,7 +52,7 @@ public:
   /// @param domain, held  must outlive this object
   /// @param held  by rank, the voxels that the rank's arrays cover, ghost cells included
   /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: the rank has no voxels. On
-  /// one rank: a caster of the whole domain, without a block
+  ///   one rank: a caster of the whole domain, without a block
   /// @param atOnce  limits of the work in progress, the same on all ranks
   /// @throws InvalidInput  on all ranks, if the lights differ between ranks
   PictureInBlocks(

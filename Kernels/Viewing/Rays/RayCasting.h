@@ -48,7 +48,7 @@ public:
   /// @param camera  camera of the picture
   /// @param block  block of a larger grid that the picture shows; null: the picture shows the whole domain
   /// @param sharp  whether this is the pass for unscattered light of a picture made of angular moments. This pass shows
-  /// the environment's peaks and determines the picture's alpha and depth (numerics.md, section 14.7)
+  ///   the environment's peaks and determines the picture's alpha and depth (numerics.md, section 14.7)
   /// @throws InvalidInput for a degenerate camera or one too far away
   RayPass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
 

@@ -41,7 +41,7 @@ struct SampleBricks
 
 /// Layout for the filled bricks of a medium.
 /// @param paired  whether each sample also holds the next sample along y; records then omit the samples on the upper y
-/// faces
+///   faces
 SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool paired);
 
 /// Purpose for which samples are packed.

@@ -42,7 +42,7 @@ inline int voxel_index(int4 size)
 }
 // Whether any ray samples a voxel of this work-group, which packs PackedAlong voxels of a row.
 // @param seen  one flag per work-group along x and per 8 x 8 rows, the cross-section of a brick (SeenGroups in
-// PackedSamples.cxx)
+//   PackedSamples.cxx)
 inline int is_seen(__global const uchar* seen, int4 size)
 {
   const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1) >> BrickBits;

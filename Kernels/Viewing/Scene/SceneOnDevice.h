@@ -40,7 +40,7 @@ struct SceneOnDevice
   /// (ViewTraits::PacksOnce), the caller's arrays are read without a copy: medium and light must then outlive the call
   /// of GiveBackWhatIsPacked.
   /// @param block  position of the medium in a larger grid, with `ior` covering BlockOfScene::known; null: the medium
-  /// is the whole domain
+  ///   is the whole domain
   /// @throws DeviceError if the arrays do not fit the device
   SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& ior,
     const ViewTraits& traits, const BlockOfScene* block);
