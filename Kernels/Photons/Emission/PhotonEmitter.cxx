@@ -27,32 +27,18 @@ struct SpreadSource
   PhotonSource source;
   std::optional<ImportanceSampler> sampler;
 
-  /// Maps a sample to a photon; empty if the light emits nothing there.
-  /// @param weight  output: ratio of the photon's power to its power in uniform sampling
-  std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
+  /// Moves a sample to where the density of samples puts it.
+  /// @return ratio of its photon's power to the power in uniform sampling
+  double Move(PhotonSample& sample) const
   {
-    weight = 1.0;
-    if (this->sampler)
+    if (!this->sampler)
     {
-      const ImportanceSampler::Place place = this->sampler->At(sample[0], sample[1]);
-      sample[0] = place.u;
-      sample[1] = place.v;
-      weight = 1.0 / place.density;
+      return 1.0;
     }
-    return this->source.shoot(sample);
-  }
-
-  /// Mean weight of the samples, 1 up to statistical fluctuation. Weights and powers are divided by it, so that the
-  /// powers of a directional light sum to the power that reaches the volume.
-  double MeanWeight(const SampleSequence& samples, std::size_t count) const
-  {
-    double sum = this->sampler ? 0.0 : static_cast<double>(count);
-    for (std::size_t i = 0; this->sampler && i < count; ++i)
-    {
-      const PhotonSample sample = samples[i];
-      sum += 1.0 / this->sampler->At(sample[0], sample[1]).density;
-    }
-    return sum / static_cast<double>(count);
+    const ImportanceSampler::Place place = this->sampler->At(sample[0], sample[1]);
+    sample[0] = place.u;
+    sample[1] = place.v;
+    return 1.0 / place.density;
   }
 };
 
@@ -90,8 +76,9 @@ Tried Try(const Grid& grid, const SpreadSource& light)
   Tried tried;
   for (std::size_t i = 0; i < TrySamples; ++i)
   {
-    double weight;
-    const std::optional<Shot> shot = light.Shoot(samples[i], weight);
+    PhotonSample sample = samples[i];
+    const double weight = light.Move(sample);
+    const std::optional<Shot> shot = light.source.shoot(sample);
     if (shot && Sum(shot->power) > 0.0 && Land(grid, *shot))
     {
       tried.power += weight * Sum(shot->power) / TrySamples;
@@ -258,6 +245,23 @@ std::vector<std::string> LeftOutOf(const std::vector<Tried>& tried, const std::v
   return words;
 }
 
+/// Divides weights and powers of a batch's photons, from index `first` on, by the mean weight of the batch's samples,
+/// which is 1 up to statistical fluctuation: the powers of a directional light then sum to the power that reaches the
+/// volume.
+void Normalize(EmittedPhotons& emitted, std::size_t first, double mean)
+{
+  for (auto photon = emitted.photons.begin() + static_cast<std::ptrdiff_t>(first); photon < emitted.photons.end();
+       ++photon)
+  {
+    photon->weight = static_cast<float>(photon->weight / mean);
+    for (int c = 0; c < 3; ++c)
+    {
+      photon->power[c] = static_cast<float>(photon->power[c] / mean);
+      emitted.power[c] += photon->power[c];
+    }
+  }
+}
+
 /// Emits the photons of one light, batch by batch.
 void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, std::uint64_t seed,
   const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
@@ -267,29 +271,35 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, s
   {
     const std::size_t first = b * tries.all / batches, count = (b + 1) * tries.all / batches - first;
     const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
+    const std::size_t begin = std::max(tries.begin, first) - first;
     const std::size_t end = std::min(count, std::max(tries.end, first) - first);
-    const double all = static_cast<double>(batches) * count, mean = light.MeanWeight(samples, count);
-    for (std::size_t i = std::max(tries.begin, first) - first; i < end; ++i)
+    const std::size_t made = emitted.photons.size();
+    double weights = light.sampler ? 0.0 : static_cast<double>(count);
+    // The mean weight includes the samples of other parts. Without a density of samples all weights are 1.
+    for (std::size_t i = light.sampler ? 0 : begin; i < (light.sampler ? count : end); ++i)
     {
-      double weight;
-      const std::optional<Shot> shot = light.Shoot(samples[i], weight);
-      std::optional<Photon> photon = PhotonOf(grid, shot, weight / mean, 1.0 / all);
+      PhotonSample sample = samples[i];
+      const double weight = light.Move(sample);
+      weights += light.sampler ? weight : 0.0;
+      if (i < begin || i >= end)
+      {
+        continue;
+      }
+      const std::optional<Photon> photon =
+        PhotonOf(grid, light.source.shoot(sample), weight, 1.0 / (static_cast<double>(batches) * count));
       if (photon)
       {
-        photon->batch = static_cast<std::int32_t>(b);
-        for (int c = 0; c < 3; ++c)
-        {
-          emitted.power[c] += photon->power[c];
-        }
         emitted.photons.push_back(*photon);
+        emitted.photons.back().batch = static_cast<std::int32_t>(b);
         emitted.lights.push_back(light.source.light);
       }
       if ((first + i) % ReportEvery == ReportEvery - 1)
       {
-        const double made = static_cast<double>(emitted.photons.size()) * settings.parts;
-        Report(monitor, std::min(1.0, made / static_cast<double>(settings.photonCount)));
+        const double all = static_cast<double>(emitted.photons.size()) * settings.parts;
+        Report(monitor, std::min(1.0, all / static_cast<double>(settings.photonCount)));
       }
     }
+    Normalize(emitted, made, weights / static_cast<double>(count));
   }
 }
 }
