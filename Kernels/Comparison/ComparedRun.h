@@ -86,8 +86,9 @@ struct ComparedSettings
   /// The default number of terms, as far as the quadrature supports it, is always included.
   std::vector<int> terms;
   bool previews = false; ///< whether light propagation maps try their preview
-  /// Settings that Photons try along bent rays, in addition to the defaults: orders and step sizes of the integrator
-  /// (MarchSettings), each order with each step size; and tolerances of octrees, whose construction counts as run time.
+  /// Settings that Photons try along bent rays, in addition to the defaults. Orders and step sizes of the integrator
+  /// (MarchSettings): each order is combined with each step size. Tolerances of octrees: the construction of an octree
+  /// counts as run time.
   std::vector<int> integratorOrders;
   std::vector<double> stepSizes, octreeTolerances;
   /// Numbers of samples per voxel edge, and widths of the filter that smooths the refractive index, with which a mesh
@@ -108,10 +109,10 @@ struct ComparedRun
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting; ///< description of the setting, for the user
   /// The filters that repeat the run, in the order of the data: "Filter Property=Value ... | Filter ...". A value is a
-  /// list of numbers with commas; "#2" for the output of the second filter; "@Mesh" for the data set at the
-  /// comparison's input Mesh; or empty for an input without a data set. All other inputs and properties are those of
-  /// the comparison. Empty if filters cannot repeat the run: coarser voxels, or photons unless
-  /// ComparedScene::suitsEmitter.
+  /// list of numbers with commas, "#2" for the output of the second filter, "@Mesh" for the data set at the
+  /// comparison's input Mesh, or empty for an input without a data set. All other inputs and properties are those of
+  /// the comparison. Empty if filters cannot repeat the run, because it has coarser voxels, or traces photons and
+  /// ComparedScene::suitsEmitter is false.
   std::string filters;
   Grid grid;         ///< grid of the resulting light; a picture's pixels
   double cost = 1.0; ///< cost relative to other runs of the method: rays times voxels, or photons

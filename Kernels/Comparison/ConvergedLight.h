@@ -57,8 +57,8 @@ struct ReferenceLight
 /// directions per face, two rays per voxel edge and tolerance 1e-6, on the grid with halved voxel edges. If it would
 /// take more than `seconds` (NominalSeconds), it has fewer directions, rays or voxels. With a varying index, the
 /// reference is uncollided light or all light from photons (ComparedSettings::scattersReference).
-/// @throws InvalidInput if MonteCarloReference::Always is set but photons cannot simulate this scene; what the monitor
-///   throws, if the machine is far slower than NominalSeconds
+/// @throws InvalidInput if MonteCarloReference::Always is set but photons cannot simulate this scene; the exception of
+///   the monitor, if the machine is far slower than NominalSeconds
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

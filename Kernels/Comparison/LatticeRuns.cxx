@@ -60,8 +60,8 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
         SolveLatticeBoltzmann(device, solved.domain, solved.medium, solved.index, solved.illumination, of, monitor);
       if (estimate)
       {
-        // The scene without the index, which is constant: the error estimate then does not need cubic voxels on its
-        // coarse grid
+        // The refractive index, which is constant, is omitted: the error estimate then accepts a coarse grid whose
+        // voxels are not cubic.
         const SceneBlock straight = { solved.domain, solved.medium, solved.illumination };
         EstimateDiffusionError(device, straight, of, false, monitor, light);
       }

@@ -65,9 +65,9 @@ struct PhotonForecast
 
 /// Compares a few photons with the finest light propagation maps on the scene's own grid. The squared error of the maps
 /// is taken as the mean square of the difference, minus the photons' variance, minus twice the standard deviation of
-/// this variance. Photons are forecast to be better in two cases. Either as many photons as the time allows have a
-/// standard error of at most a third of the maps' error, or even maps of few directions take more than a quarter of the
-/// time. All times are NominalSeconds.
+/// this variance. Photons are forecast to be better in two cases: if with as many photons as the time allows the
+/// standard error is at most a third of the maps' error, or if even maps of few directions take more than a quarter of
+/// the time. All times are NominalSeconds.
 /// @param seconds  time for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

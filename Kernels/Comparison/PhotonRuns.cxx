@@ -138,7 +138,7 @@ PhotonSetting SettingWith(int count, Sampler sampler)
   return setting;
 }
 
-/// Settings with the integrators and octrees that photons try along bent rays.
+/// Settings with the integrators and octrees that runs of photons try along bent rays.
 /// @param usual  values of all other settings
 std::vector<PhotonSetting> AlongBentRays(const PhotonSetting& usual, const ComparedSettings& settings)
 {

@@ -138,7 +138,7 @@ std::string FiltersOf(ComparedMethod method, const Setting& setting, int terms)
 }
 
 /// The run of a method with one setting.
-/// @param factors  of the coarsening
+/// @param factors  coarsening factor along each axis
 ComparedRun RunOf(ComparedMethod method, const Setting& setting, const Factors& factors, Device& device,
   const ComparedScene& scene, const ComparedSettings& settings)
 {

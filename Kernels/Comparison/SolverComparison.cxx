@@ -485,7 +485,7 @@ void MarkPareto(std::vector<ComparisonRow>& rows)
 
 namespace
 {
-/// The row of a quantity that is recommended, among those that filters can repeat; null if there is none.
+/// Finds the row to recommend for a quantity, among those that filters can repeat; null if there is none.
 ComparisonRow* BestOf(std::vector<ComparisonRow>& rows, ComparedQuantity quantity, double acceptedError)
 {
   const auto isBetter = [=](const ComparisonRow& a, const ComparisonRow& b) {

@@ -58,8 +58,7 @@ public:
   std::size_t Size() const { return this->Count; }
   const cl::Buffer& Handle() const { return this->Memory.memory; }
 
-  /// Copy values between the host and the array, after waiting for the device: Write from `values` to the array, Read
-  /// from the array to `values`.
+  /// Write copies from `values` to the array, Read from the array to `values`. Both first wait for the device.
   void Write(const T* values) { this->Write(values, this->Count); }
   void Write(const T* values, std::size_t count) ///< copies the first `count` values only
   {

@@ -88,7 +88,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// Sentence for an error message: the compiler of an OpenCL driver needs more memory, and how to provide it.
+/// Sentence for an error message. It says that an OpenCL driver needs more memory, and how to provide it.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();
@@ -113,7 +113,7 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
   }
   if (platforms.empty())
   {
-    // The OpenCL loader reports that there is no driver also if memory is short.
+    // The OpenCL loader also reports that there is no driver if memory is short.
     troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
                                                    : std::string(" Install one:");
     troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";

@@ -9,8 +9,8 @@ namespace tyndall
 /// Size of the machine's main memory, bytes.
 std::size_t HostMemory();
 
-/// Checks that arrays fit the machine's memory before they are allocated. Otherwise a machine that swaps memory to disk
-/// would become slow without an error.
+/// Checks that arrays fit the machine's memory before they are allocated. Without this check, a machine that swaps
+/// memory to disk would become slow without an error.
 /// @param bytes  total size of the arrays
 /// @param what  description of the arrays, e.g. "A medium of 4 x 4 x 4 voxels (28 bytes each)"
 /// @param advice  a sentence that says what to do if they do not fit

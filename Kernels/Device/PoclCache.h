@@ -56,13 +56,14 @@ private:
 };
 
 /// Renames damaged files in PoCL's cache folder to *.damaged, so that PoCL compiles their programs again. Files count
-/// as damaged if
+/// as damaged in three cases:
 ///  - they are bitcode or libraries that are truncated, overwritten or unreadable;
 ///  - their contents changed since an earlier call recorded their checksums in the folder;
 ///  - two processes that started within the last hour, at least ten seconds apart, ended while they were building a
-///    program (BuildMark): then the files of all programs count as damaged. Files that look unchanged since their
-///    checksums were recorded are not read. Other processes may call this function at the same time, and PoCL may
-///    write: it writes files under another name and then renames them, so that none is incomplete.
+///    program (BuildMark): then the files of all programs count as damaged.
+/// Files that look unchanged since their checksums were recorded are not read. Other processes may call this function
+/// at the same time, and PoCL may write: it writes files under another name and then renames them, so that none is
+/// incomplete.
 DamagedFiles SetDamagedAside(const std::string& folder);
 
 /// Records the checksums of files that PoCL has written to the folder since the last call.

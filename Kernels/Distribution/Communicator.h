@@ -146,8 +146,8 @@ private:
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< messages from this rank to itself, by tag
 };
 
-/// The text `own` of the lowest rank that has one. Empty if the text is empty on all ranks. The result is the same on
-/// every rank. Collective.
+/// The text `own` of the lowest rank on which it is not empty; empty if there is no such rank. The result is the same
+/// on every rank. Collective.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
 /// Whether `own` is true on at least one rank. The result is the same on every rank. Collective.

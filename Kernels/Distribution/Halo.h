@@ -23,8 +23,8 @@ public:
   ///   out
   /// @param held  a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
   /// @param gridSize  cells along each axis. Ghost cells beyond an end of the grid wrap around; all cells of a box wrap
-  ///   by the same number of periods. They may be images of the rank's own cells. Zeros: no ghost cells lie beyond the
-  ///   grid
+  ///   by the same number of periods. They may be images of the rank's own cells. If all sizes are 0, no ghost cells
+  ///   lie beyond the grid
   GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
     const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held,
     const std::array<int, 3>& gridSize = { 0, 0, 0 });
@@ -114,9 +114,9 @@ private:
 std::array<bool, 3> GoesRoundAlone(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
 
-/// Layers of cells, one cell thick, beyond the faces of a block, each as a box. Beyond an end of the grid there is no
-/// layer, unless the axis is periodic: then the layer wraps around. There is none either if the block spans the whole
-/// periodic axis. Nothing for an empty block.
+/// Layers of cells, one cell thick, beyond the faces of a block, each as a box. A layer beyond an end of the grid
+/// exists only if the axis is periodic and the block does not span all of it; the layer then wraps around. An empty
+/// block has no layers.
 std::vector<VoxelBox> LayersBeside(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic = {});
 

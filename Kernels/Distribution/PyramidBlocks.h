@@ -55,7 +55,7 @@ private:
   int SharedLevel;
   std::vector<VoxelBox> Boxes; ///< by rank: its box, which is its block and a margin around it
   bool AnyMargin = false;      ///< whether some rank's box is larger than its block
-  /// Partition of the cells of the shared level, the highest one that ranks compute for their boxes, among the ranks.
+  /// Cells of the shared level, the highest one that ranks compute for their boxes, partitioned among the ranks.
   BlockPartition Cells;
 };
 }

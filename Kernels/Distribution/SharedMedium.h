@@ -27,7 +27,7 @@ void RequireSame(Communicator& communicator, const char* what, bool has, std::ve
 /// @throws InvalidInput on all ranks, if grids or partitions differ
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
-/// Whether this rank is the lowest one that has voxels. This rank counts quantities that all ranks with voxels know.
+/// Whether this rank is the lowest one that has voxels. It alone counts quantities that all ranks with voxels know.
 /// Sends no message.
 bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
 

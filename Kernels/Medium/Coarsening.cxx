@@ -32,7 +32,7 @@ struct Part
 };
 
 /// Means over coarse voxels along one axis. The input array [outer][fine voxel][inner] covers the fine voxels `from`
-/// along the axis, the result [outer][coarse voxel][inner] the coarse voxels `to`.
+/// along the axis, and the result [outer][coarse voxel][inner] covers the coarse voxels `to`.
 std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, std::size_t outer, const Part& from,
   const Part& to, std::size_t inner)
 {

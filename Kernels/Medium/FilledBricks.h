@@ -9,9 +9,9 @@
 
 namespace tyndall
 {
-/// Partition of a medium into bricks of BrickEdge^3 voxels, from the grid's lower corner (the last brick along an axis
-/// may reach beyond the grid), and for each brick whether it is filled, i.e. has a voxel with non-zero sigma_t or
-/// emission.
+/// Partition of a medium into bricks of BrickEdge^3 voxels. It records for each brick whether it is filled, i.e. has a
+/// voxel with non-zero sigma_t or emission. Bricks begin at the grid's lower corner; the last one along an axis may
+/// reach beyond the grid.
 ///
 /// Determined in one pass over the medium's arrays, on all cores and together with the checks that every solver makes.
 /// A mostly empty medium thus costs little more than one read. The active-voxel mask of a file is not used: after a

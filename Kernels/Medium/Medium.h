@@ -41,8 +41,8 @@ struct Medium
   }
 };
 
-/// Whether any voxel's transport optical thickness, along the grid's longest spacing and with TransportSigmaT, is above
-/// `meanFreePaths`.
+/// Whether any voxel is optically thicker than `meanFreePaths`. Its thickness is TransportSigmaT times the grid's
+/// longest spacing.
 bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium);
 
 /// Text "(i, j, k)" for the voxel at array index `voxel`.

@@ -8,8 +8,8 @@
 namespace tyndall
 {
 /// Chooses `count` distinct numbers in [0, size), ascending, one from each of `count` equal intervals. The position
-/// within an interval follows the golden ratio. With constant steps, the numbers would be in phase with the powers of
-/// two in the starting points of photons, and all chosen photons would start along one line.
+/// within an interval follows the golden ratio. Constant steps would not do: the starting points of photons depend on
+/// the binary digits of their numbers, so that all chosen photons could start along one line.
 inline std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count)
 {
   std::vector<std::size_t> chosen;

@@ -235,7 +235,7 @@ double PeakBeyond(const std::vector<double>& moments, int terms)
 
 /// Damps the part of the phase function without the peak: multiplies its eigenvalues of degree l by exp(-s l (l + 1)),
 /// with the smallest s for which the sum is nowhere negative. `peak` is the fraction in the peak; it is changed so that
-/// the mean cosine stays.
+/// the mean cosine stays the same.
 void DampNegatives(const VectorXd& roots, double g, Basis& basis, double& peak)
 {
   const VectorXd whole = basis.values;

@@ -131,7 +131,7 @@ inline int within(int i, int count)
 }
 
 // Pitches in floats of a layer of rows (layer_of) and of a quantity's volume (field_of). Neither is a multiple of 4 kB:
-// layers would then evict each other from the cache (LightPyramid.cxx).
+// with such a pitch, layers would evict each other from the cache (LightPyramid.cxx).
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;

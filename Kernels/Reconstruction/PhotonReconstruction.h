@@ -32,8 +32,8 @@ struct ReconstructionSettings
 {
   enum class Estimator
   {
-    /// Light of each voxel from one pyramid level, the lower of two levels (Pfeuti 2009, section 3.2.4): the level up
-    /// to which differences of successive levels do not grow, and a level that is proportional to the photon weight.
+    /// Takes the light of each voxel from the lower of two pyramid levels (Pfeuti 2009, section 3.2.4). One is the
+    /// level up to which differences of successive levels do not grow; the other is proportional to the photon weight.
     Published,
     /// Keeps the detail of each pyramid level as far as independent batches agree on it, and estimates the error.
     Conservative,

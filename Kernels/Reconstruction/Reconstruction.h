@@ -73,7 +73,8 @@ private:
 };
 
 /// Computes light by the conservative estimator. The detail of a pyramid level is the level minus the interpolation of
-/// the next coarser one. Of the batches' mean light, each detail is kept as far as the batches agree on it. Collective.
+/// the next coarser one. The estimator keeps each detail of the batches' mean light as far as the batches agree on it.
+/// Collective.
 /// @param result  arrays must have the size of the box (Reconstruction::MakeRoom)
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 

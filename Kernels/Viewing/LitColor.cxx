@@ -17,8 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per thread
-/// Largest number of pixels along each edge of a view from which the exposure is determined: a parallel projection
-/// along an axis of the grid, in which a pixel shows one column of voxels.
+/// The exposure is determined from views with at most this number of pixels along each edge. A view is a parallel
+/// projection along an axis of the grid, in which a pixel shows one column of voxels.
 constexpr int ColumnsOfView = 64;
 /// Lower limit on the largest optical depth k sigma_t distance of a voxel, with alpha = 1 - exp(-k sigma_t distance)
 /// (LitColor.h). LitColor::distance is chosen so long that the limit is reached: 8 bits then resolve the opacities.

@@ -22,11 +22,11 @@ struct LitColor
 /// Computes the colour of the light that each voxel scatters and emits, and the voxel's opacity (numerics.md, section
 /// 14.8).
 ///
-/// Colour: the tone-mapped source function (sigma_s fluence / (4 pi) + emission) / sigma_t; where the medium is too
-/// thin to become opaque along any ray, reduced to the brightness that a ray can reach. Scattering is taken as
-/// isotropic, so the colour does not depend on the position of the eye. A voxel without extinction receives the mean
-/// colour of its neighbours, so that interpolation at the medium's rim does not darken it. Emission from voxels without
-/// extinction is not shown.
+/// Colour: the tone-mapped source function (sigma_s fluence / (4 pi) + emission) / sigma_t. Where the medium is too
+/// thin to become opaque along any ray, the colour is reduced to the brightness that a ray can reach. Scattering is
+/// taken as isotropic, so the colour does not depend on the position of the eye. A voxel without extinction receives
+/// the mean colour of its neighbours, so that interpolation at the medium's rim does not darken it. Emission from
+/// voxels without extinction is not shown.
 ///
 /// Alpha: 1 - exp(-k sigma_t distance), with sigma_t averaged over the channels. Blending in display (gamma-encoded)
 /// values makes a thin veil darker than its radiance. The factor k compensates for this: it makes a quarter of the

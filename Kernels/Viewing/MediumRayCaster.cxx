@@ -226,7 +226,7 @@ bool MediumRayCaster::ShowsBackgroundColor() const
 }
 
 /// Packs the samples of the medium for the pass `what` of the picture, for scattered or for unscattered light, unless
-/// they are already packed so.
+/// they are already packed for this pass.
 void MediumRayCaster::Pack(Packing what)
 {
   if (this->Samples.PackedFor() != what)

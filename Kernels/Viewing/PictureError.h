@@ -35,7 +35,7 @@ struct PictureErrorCasters
   std::string lightLeftOut; ///< why the error of the light is not part of the estimate; empty: it is, or is none
 };
 
-/// Renders the picture `coarse`, or `ofLight` if the first argument is true, by a camera and in a size in pixels.
+/// Renders the picture `coarse`, or `ofLight` if the first argument is true, with a given camera and size in pixels.
 using RenderForError = std::function<Picture(bool ofLight, const Camera&, const std::array<int, 2>& size)>;
 
 /// Sets error and relativeError of a picture.

@@ -99,7 +99,7 @@ void Check(const ToneMapping& settings)
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
   constexpr float Parts = 16.0f; // count by which a fully covered pixel increases its class of the luminance histogram
-  // The class of a luminance in the histogram is given by the bits of the float above this many low bits.
+  // The class of a luminance in the histogram is its float as an integer, without this many low bits.
   constexpr int Shift = 23 - 8;
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;

@@ -27,11 +27,11 @@ struct ToneMapping
 void Check(const ToneMapping& settings);
 
 /// The exposure that ToneMap uses if ToneMapping::exposure is 0. Lit pixels determine it, not the black background. A
-/// pixel that the medium covers in part is weighted by its coverage, with the radiance of the covered part. Thin smoke
-/// is therefore exposed like thick smoke, or like smoke in front of an equally bright background. Coverage below
-/// ThinnestPart counts as ThinnestPart, because such a pixel may show a bright emitter. Lit pixels darker than a
-/// thousandth of the 95th percentile do not count: nearly black pixels would overexpose the others. Returns 1 if no
-/// pixel is lit.
+/// pixel that the medium covers in part counts with its coverage as weight, and with the radiance of its covered part.
+/// This radiance is computed with a coverage of at least ThinnestPart, because the pixel may show a bright emitter.
+/// Thin smoke is therefore exposed like thick smoke, or like smoke in front of an equally bright background. Lit pixels
+/// darker than a thousandth of the 95th percentile do not count: nearly black pixels would overexpose the others.
+/// Returns 1 if no pixel is lit.
 /// @param radiance  3 per pixel, >= 0
 /// @param alpha     coverage, one per pixel in [0, 1]; empty: all pixels are fully covered, as by a background
 double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha);

@@ -59,7 +59,7 @@ struct EmittedPhotons
 ///  - spot: over the smaller of its cone and the solid angle of the volume; samples outside the larger one are
 ///    rejected
 ///  - rectangle: from points on the rectangle to the faces of the volume that each point sees, power weighted by the
-///    cosine; inside the volume, into a half-space; for a rectangle that is large as seen from the volume: from
+///    cosine; for points inside the volume, into a half-space. A rectangle that is large as seen from the volume: from
 ///    points on the faces, over the solid angle of the rectangle as seen from each point
 ///  - environment and sky: direction by radiance, solid angle and projected area of the volume, then position over
 ///    the outline of the volume in that direction

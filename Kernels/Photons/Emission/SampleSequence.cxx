@@ -33,8 +33,8 @@ double RadicalInverse(std::size_t i, std::size_t base)
   return std::min(inverse, 1.0 - 0x1p-53);
 }
 
-/// Stride with which an index, taken modulo `count`, visits each of 0 ... count - 1 once, with successive values far
-/// apart.
+/// Stride that visits each of 0 ... `count` - 1 once if it is added repeatedly modulo `count`. Successive values are
+/// far apart.
 std::size_t Scatter(std::size_t count)
 {
   std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(0.6180339887498949 * count), 1);

@@ -60,8 +60,8 @@ std::vector<double> LuminanceOf(const PilotLight& light)
   return luminance;
 }
 
-/// Adds the pilot light of one lamp to that of earlier lamps. A cell reached by several lamps keeps the origins,
-/// positions on the photon plane, of the first lamp's photons.
+/// Adds the pilot light of one lamp to that of earlier lamps. If several lamps reach a cell, the cell keeps the origins
+/// (positions on the photon plane) of the first lamp's photons.
 void Add(const PilotLight& more, PilotLight& light)
 {
   if (light.count.empty())
@@ -192,10 +192,10 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter, in map cells, of the circle drawn for a coarse cell. As published (Listing B.1), it is the sum of two
-/// standard deviations, along the two axes of the photon plane, of the origins of the cell's photons. This leaves gaps
-/// between the circles of neighbouring cells. Otherwise the circle spans the square with these deviations, including
-/// the spread of origins within their map cells.
+/// Diameter, in map cells, of the circle drawn for a coarse cell. As published (Listing B.1), it is the sum of the
+/// standard deviations of the origins of the cell's photons along the two axes of the photon plane. This leaves gaps
+/// between the circles of neighbouring cells. If `asPublished` is false, it is twice the sum, and includes the spread
+/// of origins within their map cells.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -255,8 +255,8 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-/// Standard deviation, from 1, of the map's means over blocks, eight along an edge. Smaller blocks would show mainly
-/// the gaps between the circles of neighbouring cells.
+/// Root mean square deviation from 1 of the map's means over blocks, eight along an edge. Smaller blocks would show
+/// mainly the gaps between the circles of neighbouring cells.
 double DeviationOf(const std::vector<double>& map, int size)
 {
   const int blocks = std::min(size, 8);

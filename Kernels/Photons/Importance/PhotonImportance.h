@@ -29,8 +29,8 @@ struct ImportanceSettings
 struct Importance
 {
   ImportanceMap map; ///< relative density of photon origins on each light's photon plane, mean 1 for each light
-  /// Light of the pilot photons of all lamps, in coarse cells. A cell stores the origins, positions on the photon
-  /// plane, of the first lamp in the list whose photons reach the cell.
+  /// Light of the pilot photons of all lamps, in coarse cells. A cell stores the origins of photons of one lamp, the
+  /// first in the list whose photons reach the cell. An origin is a position on the photon plane.
   PilotLight pilot;
   std::vector<float> gradient; ///< W / length^2, difference of fluence between neighbouring cells, one value per cell
   std::vector<float> chosen;   ///< by cell: 1 if it is to be sampled densely, else 0

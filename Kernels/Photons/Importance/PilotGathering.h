@@ -28,8 +28,8 @@ public:
   {
   }
 
-  /// Marches pilot photons, the few from which an importance map is computed, and returns their light in the coarse
-  /// cells. Collective.
+  /// Marches pilot photons, and returns their light in the coarse cells. Pilot photons are the few from which an
+  /// importance map is computed. Collective.
   /// @param photons, origins  pilot photons and their columns and rows on the photon plane, the same on all ranks
   /// @param cells  number of coarse cells along each axis
   /// @return the light of the domain, on every rank

@@ -178,8 +178,8 @@ public:
   /// PhotonMedium.cl stores it. By bricks: [channel][record of PhotonBricks].
   Buffer<float> sigma;
   Buffer<float> coefficients; ///< coefficients of the spline of n^2, SquaredIndex.cl
-  /// Octree nodes of the voxels of block.known, as pack_nodes of PhotonMedium.cl stores them; after SetNodes those of
-  /// all voxels of the domain, as BrickedBytes
+  /// Octree nodes. SetNodes sets those of all voxels of the domain, as BrickedBytes; before, the array holds those of
+  /// the voxels of block.known, as pack_nodes of PhotonMedium.cl stores them
   Buffer<cl_uchar> nodes;
 
 private:

@@ -43,8 +43,8 @@ struct MarchSums
   int numbers = 1;         ///< 64-bit numbers in a record
   bool directions = false; ///< whether a record holds the sums of power times direction
   bool counts = false;     ///< whether a record counts the photons that crossed its voxel
-  /// Set if deposits are summed in coarse cells, which also count photons: index of the coarse cell of each voxel.
-  /// Null: deposits are summed in voxels.
+  /// Index of the coarse cell of each voxel, if deposits are summed in coarse cells, which also count photons. Null:
+  /// deposits are summed in voxels.
   const Buffer<cl_int>* cells = nullptr;
   const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copy][record][number]
 
@@ -179,7 +179,7 @@ struct TurnTimes
 /// deposited in earlier turns is processed (Bernabei et al., section III-A).
 struct MarchTurns
 {
-  /// Number of path segments, from voxel wall to voxel wall, that a photon marches per turn. 0: a single turn, to the
+  /// Number of path segments (from voxel wall to voxel wall) that a photon marches per turn. 0: a single turn, to the
   /// photon's end.
   int stretches = 16;
   /// Whether photons march on a separate command queue, concurrently with the processing of light (`meanwhile`). False:
@@ -198,7 +198,7 @@ struct MarchTurns
   TurnTimes times; ///< output: device times of the march
 };
 
-/// Marches photons to their ends in turns, launches over a limited number of path segments (MarchTurns).
+/// Marches photons to their ends in turns. Each turn is a launch over a limited number of path segments (MarchTurns).
 /// @param show  queues the conversion of the sums accumulated so far to fluence
 /// @throws DeviceError if the states of the photons do not fit into the device's memory; Aborted: the sums then hold
 ///   only a part of the paths

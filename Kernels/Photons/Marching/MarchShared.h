@@ -84,7 +84,7 @@ typedef struct
   float wall[3]; ///< time since the step began at which the photon reaches the next wall along each axis
   float now;     ///< time since the step began
   float turn;    ///< time since the step began at which the step ends
-  /// Time since the step began until which the photon starts no new step where the refractive index varies
+  /// Until this time since the step began, a varying refractive index in the photon's voxel does not start a new step
   float settled;
   float step;        ///< duration of the current step
   float start[3];    ///< position at which the step began
@@ -119,11 +119,10 @@ typedef struct
 {
   IndexGrid grid;
   float diagonal; ///< length of a voxel's diagonal
-  /// Factor that converts deposits, in units of power times voxel diagonal, to fluence, W / length^2; divided by
-  /// 2^exponent
+  /// Mantissa of the factor that converts deposits, in units of power times voxel diagonal, to fluence, W / length^2.
+  /// The factor is fluence 2^exponent
   float fluence;
-  /// Binary exponent of the factor `fluence`. It is stored separately because the factor times 2^exponent may be below
-  /// the range of float
+  /// Binary exponent of the factor from deposits to fluence, which may itself be below the range of float
   int exponent;
   float colour[3];            ///< colour of the single channel, relative to white, if CHANNELS is 1
   float weight;               ///< photon weight per unit of the voxels' sums of weights

@@ -9,7 +9,7 @@
 #define NO_SLOPE 1e37f // stands for the infinite time to cross a voxel along an axis with zero velocity
 
 // Finds the records (MarchMedium.h) that hold the sums and the extinction of the photons' voxels.
-//   last  edge, in voxels and less 1, of the region that a photon crosses in one segment: BrickEdge - 1 in an empty
+//   last  edge, in voxels, of the region that a photon crosses in one segment, minus 1: BrickEdge - 1 in an empty
 //         brick, 0 in a single voxel
 static void find_records(const march_arrays* arrays, const integer* voxel, integer* record, integer* last)
 {

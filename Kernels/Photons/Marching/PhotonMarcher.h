@@ -60,8 +60,8 @@ public:
   ///   DeviceError if the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
 
-  /// Marches photons in turns, launches over a limited number of path segments, with callbacks in between. The light is
-  /// the same as from March. For one rank and one scattering order, without batches.
+  /// Marches photons in turns, with callbacks in between. Each turn is a launch over a limited number of path segments.
+  /// The light is the same as from March. For one rank and one scattering order, without batches.
   /// @param turns  callbacks and length of a turn; `times` receives the device times
   /// @throws InvalidInput if the settings request batches or more than one order, or light is stored by bricks;
   ///   otherwise as March

@@ -3,8 +3,8 @@
 //   BENDS       1: the index varies; ORDER of the integrator is then 1, 2 or 4
 //   NODE_BRICKS 1: the array `nodes` covers the domain, in the layout of BrickedBytes
 //   DIRECTIONS  1: directions are recorded
-//   MARKS       1: each photon carries a number, its mark (PhotonMarch.cl): from it, coarse cells or voxels sum the
-//               photon's origin or weight; with PATHS it is the photon's index
+//   MARKS       1: each photon carries a number, its mark (PhotonMarch.cl): its weight or origin, which voxels or
+//               coarse cells sum; with PATHS its index
 //   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl), and a voxel's index in arrays is that of its
 //               record: one record per voxel of a filled brick, one for an entire empty brick
 //   BLOCKS      1: the grid is a block of the domain, and photons march until they leave it; without BRICKS
@@ -380,7 +380,7 @@ static real times_of_steps(
   return node == 0 ? (real)0.0f : time;
 }
 
-// Computes dT/dt at positions p, half the gradient of n^2 of Eq. (90), in voxels.
+// Computes dT/dt of Eq. (90), which is half the gradient of n^2, at positions p, in voxels.
 static void pull(const march_arrays* arrays, integer mask, const real* p, real* change)
 {
   real squared;
@@ -454,7 +454,7 @@ static real take_step(
 }
 #endif
 
-// Starts new steps of the photons in a mask. These have ended a step, or have entered a region of varying index.
+// Starts new steps of the photons in a mask, which have ended a step or have entered a region of varying index.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
   const MarchInfo* info = arrays->info;

@@ -58,8 +58,8 @@ struct PhotonScattering
   PhotonScattering(const MarchMedium& through, const Medium& medium, double stepPart);
 
   /// Ratio of the fixed-point unit of power (PackedPhotons::unit) for scattered photons to that for uncollided light.
-  /// The unit is larger because scattered photons may return to a voxel: its sum reaches 2^62 only after this many
-  /// times the deposits of uncollided light.
+  /// The unit is larger because scattered photons may return to a voxel. The sum of a voxel reaches 2^62 only if it
+  /// gets this many times the deposits of uncollided light.
   static constexpr double DepositsPerEvent = 4096.0;
 
   const MarchMedium& through;

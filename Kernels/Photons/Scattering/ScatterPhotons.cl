@@ -5,7 +5,7 @@
 //   GATHERS   1: sums include the net flux besides the power
 //   PHASE     phase function: 0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 table of cosines
 //   VARIES    1: the parameter of phase functions 1 and 2 is given by voxel
-//   COSINES   number of cosines in the table, less one
+//   COSINES   number of cosines in the table, minus one
 //
 // The optical depth to the next scattering is sampled, then reduced along the path until it is 0. Absorption is
 // subtracted from the photon's power. From the first scattering on, the photon deposits its remaining power times path

@@ -4,7 +4,8 @@
 #include "Numerics/Numerics.cl"
 
 // Weighted mean of n over the 2 RADIUS + 1 voxels along an axis. Beyond the grid its last voxel is repeated.
-//   n         n[0] is the voxel with index `place` along the axis, of `length` voxels `stride` apart
+//   n         pointer to the value of voxel number `place` of the `length` voxels along the axis, which are `stride`
+//             values apart
 //   weights   weights of the voxels at distances 1, 2, ..., RADIUS
 // The sum is over differences from n[0], so that a constant n is reproduced to the last bit.
 inline float smoothed(__global const float* n, int place, int length, long stride, __constant const float* weights)

@@ -90,9 +90,9 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 /// If scattering materials differ in their mean cosines g, a voxel has the mean g of its materials, weighted by volume
 /// fraction and sigma_s (numerics.md, Eq. (3e)).
 ///
-/// Some meshes cause a warning: those that enclose regions more than once or inside out, whose triangles disagree about
-/// the outside, or that have triangles without area. The parity of crossings then decides what is inside. Every sample
-/// is examined: a single winding number other than 0 or 1 causes the warning.
+/// A mesh causes a warning if it encloses regions more than once or inside out, if its triangles disagree about the
+/// outside, or if triangles have no area. The parity of crossings then decides what is inside. Every sample is
+/// examined: a single winding number other than 0 or 1 causes the warning.
 /// @throws InvalidInput  if a mesh is empty or open (names the number of boundary edges and the position of the
 ///   first), a number is out of range, or a voxel's edge is not 1e-18 to 1e18 lengths
 /// @throws DeviceError   before any computation, if the machine's memory is not sufficient for 12 to 56 bytes per

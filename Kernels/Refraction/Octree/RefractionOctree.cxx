@@ -169,7 +169,7 @@ private:
     this->Pyramid.push_back({ level, size, this->NodeCount });
     this->NodeCount += level > 0 ? Count(size[0]) * Count(size[1]) * Count(size[2]) : 0;
   }
-  /// Nodes of the shared level, the highest one that a rank computes from its own box, in this rank's box.
+  /// Nodes, in this rank's box, of the shared level, which is the highest one that a rank computes from its own box.
   const NodesOfLevel& OwnShared() const { return this->Pyramid[static_cast<std::size_t>(this->Blocks.Shared())]; }
   /// Nodes of the shared level in the domain, which follow those of this rank's box.
   const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; }

@@ -26,8 +26,8 @@ struct OctreeSettings
 ///  - max(n) - min(n) <= tolerance over the node's voxels;
 ///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s, (max(sigma_t) - min(sigma_t)) times the
 ///    node's diagonal <= extinctionTolerance. This bounds the error of the optical thickness of a straight path that is
-///    computed with any sigma_t of the node. No larger node would satisfy these conditions (numerics.md, Eq. (93);
-///    Pfeuti's listing has < for <=).
+///    computed with any sigma_t of the node.
+/// No larger node would satisfy these conditions (numerics.md, Eq. (93); Pfeuti's listing has < for <=).
 ///
 /// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
 /// extend beyond it. The top level is the smallest k for which a node holds the entire grid. Ranges are compared in

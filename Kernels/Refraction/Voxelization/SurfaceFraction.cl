@@ -61,8 +61,8 @@ inline int is_hidden(__global const uint* claimed, const SampleRows* rows, int3 
 // before and after the crossing is inside the mesh, this decides. Otherwise two or more crossings lie between the two
 // samples, because the mesh is thinner there than their distance. The orientation of the triangle then decides.
 //   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if the orientation is unknown
-//   first, last  whether the column begins after the crossing, so that there is no sample before it, or ends before
-//                it
+//   first    whether the column has no sample before the crossing
+//   last     whether the column has no sample after the crossing
 inline int side_of(
   __global const uint* bits, const SampleRows* rows, int3 before, int3 after, int first, int last, int turned)
 {
@@ -88,8 +88,7 @@ typedef struct
 
 // Correction of a voxel's volume by one crossing. Returns the index of the voxel in the slab, or -1 if it is outside,
 // and the correction in 1 / UNITS of a sample.
-//   excess      position of the crossing: ALONG(normal) times the distance from the column's first sample to it, plus
-//               s->tie
+//   excess      position of the crossing: ALONG(normal) times its distance from the column's first sample, plus s->tie
 //   across, up  indices of the column
 //   scale       factor that converts `twice`, below, to a correction
 //   turned      1: lines along the column leave the mesh at this triangle; -1: they enter it; 0: not known
@@ -124,11 +123,11 @@ inline int2 correction_at(
   return (int2)(index, side * convert_int_rte(scale * (float)twice));
 }
 
-// Sums the corrections of the volumes of a slab's voxels (the voxels that are processed at a time) by the crossings of
-// one mesh.
+// Corrects the volumes of a slab's voxels (the voxels that are processed at a time) by the crossings of one mesh. The
+// corrections of a voxel are summed.
 //   tiles          pieces of triangles, one per work-item, as in mark_crossings
 //   samples, bits, claimed, taken  as in mesh_samples
-//   orientation    of the mesh's triangles, seen from outside: 1 counterclockwise, -1 clockwise, 0 if triangles
+//   orientation    1 if the mesh's triangles are counterclockwise as seen from outside, -1 if clockwise, 0 if triangles
 //                  disagree
 //   corrections    output, one value per voxel of the slab, x fastest, in 1 / UNITS of a sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
@@ -203,10 +202,10 @@ inline long divided(long number, long by)
 
 // Converts counts of samples to units of 1 / UNITS_OF_COUNT of a sample, and adds the corrections.
 //
-// With several meshes, later meshes leave samples of a voxel and units of its volume to earlier ones. The units left
-// differ from those of the samples left, because the counts of later meshes are corrected too. A mesh gets a share of
-// this difference in proportion to its fraction of the samples left. If no sample is left but some units are, the share
-// is the mesh's fraction of all samples of the voxel.
+// With several meshes, a mesh can occupy only what later meshes leave of a voxel: a number of samples and a volume in
+// units. This volume is not that of the samples left, because the counts of later meshes are corrected too. A mesh gets
+// a share of the difference in proportion to its fraction of the samples left. If no sample is left but some volume is,
+// the share is the mesh's fraction of all samples of the voxel.
 //   taken    for each voxel, the samples and the units of later meshes; read only if there are several meshes. The
 //            mesh's own are added
 //   counts   counts of the slab's voxels: in samples on input, in units on output

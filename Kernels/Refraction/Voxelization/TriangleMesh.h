@@ -10,7 +10,7 @@ namespace tyndall
 struct Grid;
 struct WindingNumbers;
 
-/// A mesh of triangles, each the indices of its corners, counterclockwise as seen from outside.
+/// A mesh of triangles. A triangle has the indices of its corners, counterclockwise as seen from outside.
 struct TriangleMesh
 {
   std::vector<std::array<double, 3>> points;

@@ -106,8 +106,8 @@ inline void mark_crossing(
 #endif
 }
 
-// A triangle over the columns of a tile, the rectangle of columns that one work-item processes: the edges that bound
-// the columns it crosses, and the position of its plane along them. Coordinates are (along, across, up).
+// A triangle prepared for the columns of a tile, the rectangle of columns that one work-item processes. Its edge
+// functions tell which columns cross it; `excess` tells where. Coordinates are (along, across, up).
 typedef struct
 {
   edge e0, e1, e2; // edge functions of the three edges, in the first column of a row
@@ -232,8 +232,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
 // Summarises the winding numbers of each column's samples.
 //   sign   1; -1 if the mesh is inside out, so that its winding numbers are negated
-//   found  output for each column: the smallest of 0 and its winding numbers, the largest of 0 and these, the number of
-//          samples whose winding number is neither 0 nor 1, and the index of the first such sample (`samples` if there
+//   found  output, four numbers for each column: the smallest and the largest of its winding numbers and 0; the number
+//          of samples whose winding number is neither 0 nor 1; the index of the first such sample (`samples` if there
 //          is none)
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)

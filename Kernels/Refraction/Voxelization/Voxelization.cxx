@@ -33,8 +33,8 @@ void RunCrossings(Device& device, const cl::Kernel& kernel, std::size_t items)
     kernel, cl::NullRange, cl::NDRange(RoundUp(items, CrossingGroup)), cl::NDRange(CrossingGroup));
 }
 
-/// Tiles of a mesh's triangles (a triangle with a rectangle of sample columns each) on the device; the buffer is kept
-/// between uses.
+/// Tiles of a mesh on the device; the buffer is kept between uses. A tile is a triangle with a rectangle of sample
+/// columns.
 class TilesOnDevice
 {
 public:
@@ -242,8 +242,8 @@ public:
 
   /// Queues the measurement of the difference between the volume of a mesh in the slab's voxels and its count of
   /// samples.
-  /// @param orientation  of the mesh's triangles, seen from outside: 1 counterclockwise, -1 clockwise, 0 if triangles
-  ///   disagree
+  /// @param orientation  1 if the mesh's triangles are counterclockwise as seen from outside, -1 if clockwise, 0 if
+  ///   triangles disagree
   /// @param bits         samples inside the mesh, in the slab's rows of samples
   /// @param claimed      samples inside later meshes, in the same rows of samples; empty if there is only one mesh
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
@@ -273,9 +273,9 @@ public:
     }
   }
 
-  /// Converts (queued) the slab's counts for the mesh that was measured last from whole samples to units of 1 /
-  /// UnitsOfSample of a sample, and adds the measured difference. Also marks the mesh's samples as claimed in the rows
-  /// of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
+  /// Queues the conversion of the slab's counts for the mesh that was measured last from whole samples to units of 1 /
+  /// UnitsOfSample of a sample, with the measured difference added. Also marks the mesh's samples as claimed in the
+  /// rows of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
     const SampleRows rows = this->RowsOf(slab);
@@ -318,7 +318,7 @@ private:
   std::array<cl::Kernel, 3> MeasureAlong;
   cl::Kernel RefineCounts, ClaimSamples;
   std::array<TilesOnDevice, 3> Tiles;
-  /// For each voxel of the slab, the mesh's volume less its count of samples, in 1 / UNITS of a sample
+  /// For each voxel of the slab, the mesh's volume minus its count of samples, in 1 / UNITS of a sample
   /// (SurfaceFraction.cl).
   Buffer<cl_int> Corrections;
   /// Part of each voxel of the slab that later meshes occupy: number of samples (x), and volume in 1 / UnitsOfSample of
@@ -427,7 +427,7 @@ public:
   }
 
 private:
-  /// Number of rows of sample columns that a slab, the voxels that are processed at a time, needs beyond each of its
+  /// Number of rows of sample columns that a slab (the voxels that are processed at a time) needs beyond each of its
   /// two sides.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 

@@ -41,8 +41,8 @@ struct VoxelizationSettings
   int columnAxis = 0;
   bool fromAbove = false; ///< whether a crossing toggles the samples after it and not those before it; same result
 
-  /// Maximum memory, in bytes, of the part of the fine grid (one bit per sample) that is processed at a time, a slab. A
-  /// slab has at least one layer of voxels.
+  /// Maximum memory of a slab, bytes. A slab is the part of the fine grid that is processed at a time, with one bit per
+  /// sample; it has at least one layer of voxels.
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
@@ -66,7 +66,7 @@ struct OrientedMesh
   int orientation = 1; ///< 1: counterclockwise as seen from outside; -1: clockwise; 0: triangles disagree
 };
 
-/// Counts of the samples inside one of several meshes, for the voxels of a slab, which are processed at a time.
+/// Counts of the samples inside one of several meshes in a slab, the voxels that are processed at a time.
 struct SamplesInside
 {
   std::size_t mesh; ///< index of the mesh, in the order in which CountSamplesInside was given the meshes

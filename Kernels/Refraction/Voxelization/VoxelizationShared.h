@@ -9,8 +9,8 @@ SHARED_BEGIN
 typedef struct
 {
   float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, length
-  /// Numbers of voxels of the box: those before the first voxel; those in a run; and those from the beginning of a run
-  /// to the beginning of the next.
+  /// Numbers of voxels of the box: before the first voxel of the slab, in a run, and from the beginning of a run to
+  /// that of the next.
   ulong first, length, stride;
   int nx, ny;     ///< number of voxels of the box along x and y
   int x0, y0, z0; ///< first voxel of the box in the grid
@@ -28,7 +28,7 @@ typedef struct
   float g;                       ///< mean cosine of the phase function
 } MaterialInfo;
 
-/// Rows of columns of samples in a buffer, and the voxels that they cover: a slab, which is processed at a time.
+/// Rows of sample columns in a buffer, and the slab of voxels, processed at a time, that they cover.
 typedef struct
 {
   int4 voxels;    ///< number of voxels of the slab along x, y, z

@@ -22,9 +22,9 @@ struct WorkAtOnce
   /// Voxels for which shadow rays are traced at a time, summed over all ranks, 12 bytes each; at least one row of
   /// voxels per rank.
   std::size_t voxels = 65536;
-  /// Primary rays that travel between ranks at a time, summed over all ranks, 140 bytes each. At least four rows of
-  /// pixels travel together; fewer rays than this limit do if a device has too little memory. Rays split off from
-  /// primary rays are not counted.
+  /// Primary rays that travel between ranks at a time, summed over all ranks, 140 bytes each. There are fewer if a
+  /// device has too little memory, but at least those of four rows of pixels. Rays split off from primary rays are not
+  /// counted.
   std::size_t rays = 131072;
 };
 

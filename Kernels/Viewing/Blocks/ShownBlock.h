@@ -19,8 +19,9 @@ namespace tyndall
 ///
 ///   (S(L_k) - S(L_k-1)) / V'_k-1,  V'_k = max(V_k, largest of S(L_j) - S(L_j-1), j > k),
 ///
-/// and attenuates what is behind it by V'_k / V'_k-1. V' equals V unless a block behind is brighter than the display
-/// can show through the blocks in front; these blocks then hide less, and a block behind hides more.
+/// and attenuates what is behind it by V'_k / V'_k-1. V' equals V unless a block is brighter than the display can show
+/// through the blocks in front of it. The blocks in front then hide less than V implies, and the bright block hides
+/// more.
 class ShownBlock
 {
 public:

@@ -13,8 +13,8 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Distance in voxels between a ray's exit point and the table's face up to which the ray meets the table: allows for
-// rounding. The table is a plane at one face of the box that reflects light.
+// A ray meets the table if its exit point is at most this distance, in voxels, from the table's face. The distance
+// allows for rounding. The table is a plane at one face of the box that reflects light.
 #define REACH_OF_TABLE 2e-3f
 
 // Radiance, divided by n^2, of a white table (diffuse reflectance 1) at points of its face, interpolated between voxel

@@ -328,7 +328,7 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 }
 
 #if MANY_STEPS
-// Subtracts the fraction `part` from the transmittance `left`. To multiply by 1 - part would be less exact: in single
+// Subtracts the fraction `part` from the transmittance `left`. Multiplying by 1 - part would be less exact: in single
 // precision 1 - 1e-9 is 1.
 //   rest  compensation of rounding errors (Kahan summation), which add_to updates
 inline void lose(real* left, real* rest, real part)

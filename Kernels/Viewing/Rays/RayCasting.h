@@ -64,6 +64,7 @@ public:
 
   // The following functions march bent rays, and rays that meet a table or a surface, through a block of a larger grid;
   // such rays travel from block to block.
+
   /// Number of primary rays that fit into a quarter of the device's free memory, together with all rays that may be
   /// split off them; at least 1.
   std::size_t CountThatFits() const;

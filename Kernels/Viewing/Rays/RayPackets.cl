@@ -31,8 +31,8 @@ typedef struct
   spectrum left;
 } waiting;
 
-// State by which primary rays detect the reflecting surface, where n rises through a given value, and the rays that the
-// surface has reflected.
+// State by which primary rays detect the reflecting surface, and the rays that it has reflected. The surface is where n
+// rises through a given value.
 typedef struct
 {
   integer met;       // whether the ray has met the surface already, or is not to be split by it
@@ -65,8 +65,8 @@ inline real3 kept_within(real3 p, int4 size)
   return q;
 }
 
-// Two arrays, the samples and the bending field, each cover a box of the whole grid: its number of voxels (SIZE) and
-// its first voxel (FIRST).
+// These macros give the boxes of the whole grid that the arrays of samples and of the bending field cover: number of
+// voxels (SIZE) and first voxel (FIRST).
 #if ROUNDS
 #define SAMPLES_SIZE(s) (s)->v->held
 #define SAMPLES_FIRST(s) (s)->v->block.first

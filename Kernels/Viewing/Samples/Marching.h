@@ -32,7 +32,7 @@ inline std::string StepOption(double longestSteps)
 /// @param from, to  progress that is reported at the start and at the end, in [0, 1]
 inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
 {
-  // Samples between two progress reports; take less than a second on one old CPU core.
+  // Number of samples between two progress reports. They take less than a second on one old CPU core.
   constexpr double SamplesAtOnce = 3.2e7;
   const double atOnce = std::max(SamplesAtOnce / std::max(samples, 1.0), 1.0);
   Batches batches;

@@ -75,8 +75,8 @@ struct SharedScene
 SharedScene SharedSceneOf(
   const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings);
 
-/// Smallest straightOn, the fraction of scattering that the solver treats as unscattered, of the voxels that scatter in
-/// a channel; 1 if none does or if straightOn is not known.
+/// Smallest straightOn of the voxels that scatter in a channel; 1 if none does or if straightOn is not known.
+/// straightOn is the fraction of scattering that the solver treats as unscattered.
 double LeastStraightOn(const Medium& medium, const SolvedLight& light, int channel);
 
 /// A block as it is rendered. The composite of all blocks' pictures equals the picture of the whole domain up to

@@ -20,9 +20,9 @@ struct SolvedLight
   /// Outgoing radiance, W / (length^2 sr), in each cell of the box's faces (BoxFaces.h): 4 components, at the cosines
   /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known.
   Field surface = {};
-  /// Null: not known. scatteredMoments: angular moments of scattered light, LightField::scatteredMoments, with (degree
-  /// + 1)^2 components or 3 times as many. straightOn: the fraction of scattering that their solver treated as
-  /// unscattered, LightField::straightOn. lampsApart: the lamps whose first scattering is not in the moments,
+  /// scatteredMoments: angular moments of scattered light, LightField::scatteredMoments, with (degree + 1)^2 components
+  /// or 3 times as many. straightOn: the fraction of scattering that their solver treated as unscattered,
+  /// LightField::straightOn. Null: not known. lampsApart: the lamps whose first scattering is not in the moments,
   /// LightField::lampsApart.
   Field scatteredMoments = {}, straightOn = {};
   std::vector<Light> lampsApart = {};

@@ -47,8 +47,8 @@ typedef struct
   float g;    ///< mean cosine g of the phase function, if it is equal in all voxels
 } PackInfo;
 
-/// What packed samples hold, as flags; the macros COLOURED, GREY, BRICKED, GLOW, BENDS and SHOWN of the kernels that
-/// pack them.
+/// Flags that say what packed samples hold. They have the values of the macros COLOURED, GREY, BRICKED, GLOW, BENDS and
+/// SHOWN of the kernels that pack the samples.
 typedef struct
 {
   int coloured, grey, bricked, glow, bends, shown;

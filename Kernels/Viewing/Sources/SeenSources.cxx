@@ -178,8 +178,8 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
 namespace
 {
 /// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel. They are computed for the
-/// smallest straightOn, the fraction of scattering treated as unscattered, among the scattering voxels. Voxels with
-/// other fractions contribute little.
+/// smallest straightOn (fraction of scattering treated as unscattered) of the scattering voxels. Voxels with other
+/// fractions contribute little.
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;
