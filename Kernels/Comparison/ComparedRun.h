@@ -138,7 +138,7 @@ std::vector<ComparedRun> PropagationRunsOf(
 
 std::vector<ComparedRun> PictureRunsOf(Device& device, const ComparedScene& scene);
 
-/// The number of directions per face nearest to 25. Settings other than directions are tried with it.
+/// The number of directions per face nearest to 25. Other settings are tried with this number of directions.
 int UsualDirections(const ComparedSettings& settings);
 
 /// Light of `photons` evenly distributed photons without a filter, for a reference.

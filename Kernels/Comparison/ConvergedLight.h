@@ -29,7 +29,7 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
 }
 
 /// Nominal run times on two slow cores, seconds. These numbers decide how the reference is computed, so that the
-/// decision does not depend on the machine's load. A clock only stops work that takes too long nevertheless.
+/// decision does not depend on the machine's load. The clock is used only to stop work that takes too long.
 struct NominalSeconds
 {
   static constexpr double OfRayVoxel = 5e-9;   ///< time to sweep one ray through one voxel, per channel

@@ -55,7 +55,7 @@ bool Holds(const VoxelBox& box, const int* voxel);
 VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
 /// The ranks whose blocks touch a rank's block at a face, an edge or a corner.
-/// @param reach  voxels; blocks at less than this distance count as well
+/// @param reach  distance, voxels; blocks closer than this count as well
 /// @param periodic  periodic axes, whose two ends touch
 std::vector<int> NeighboursOf(
   const BlockPartition& partition, int rank, int reach = 1, const std::array<bool, 3>& periodic = {});

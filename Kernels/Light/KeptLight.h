@@ -36,8 +36,8 @@ struct KeptLight
   LightKind kind;
   /// Scattered light, in the units and the layout of the solver; uncollided light is recomputed in each solve.
   std::vector<float> scattered;
-  /// power of the first-collision source, W. The next solve multiplies the initial guess by the ratio of its own power
-  /// of this kind to this value
+  /// power of the first-collision source, W. The next solve divides its own power of this source by this value, and
+  /// multiplies the initial guess by the ratio
   Rgb firstScattered = {};
   Rgb rate = {}; ///< ratio of the light of successive iterations at the end of the last solve
   std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess

@@ -1,5 +1,5 @@
-// Numerics shared by all kernels that trace light through a medium. REAL_WIDTH must be defined as 1, 4, 8 or 16 before:
-// `real` is then a float or a vector of this many floats, and all functions work on either.
+// Numerics shared by all kernels that trace light through a medium. REAL_WIDTH must be defined before, as 1, 4, 8 or
+// 16. `real` is then a float or a vector of this many floats, and all functions work on either.
 
 #pragma once
 

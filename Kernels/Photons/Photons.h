@@ -57,8 +57,8 @@ struct MarchSettings
   /// then focuses no light), at least three quarters of the bricks are empty, and photons are followed through one
   /// order, without counts and batches. Otherwise light is stored voxel by voxel.
   bool byBricks = false;
-  /// Whether kernels are compiled without the channels and the path integrator if the scene does not need them. With
-  /// false, kernels always have three channels and the integrator, to measure the saving.
+  /// Whether kernels are compiled without the path integrator, and with one channel, if that suffices for the scene.
+  /// With false, kernels always have three channels and the integrator, to measure the saving.
   bool leaveOut = true;
 
   /// How concurrent additions to the same sum are kept from losing deposits. All choices give the same light, bit for

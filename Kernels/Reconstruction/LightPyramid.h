@@ -138,7 +138,7 @@ public:
   /// Allocates the pyramid of a grid.
   /// @param fields  number of quantities per cell
   /// @param levels  number of levels above the grid, at most LevelsAtMost
-  /// @param part    position of the grid, a block, in the domain
+  /// @param part    position in the domain of the grid, if it is a block
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what,
     const PartOfPyramid& part = {});
 

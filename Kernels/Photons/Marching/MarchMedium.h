@@ -73,7 +73,7 @@ public:
   struct Coefficients ///< coefficients of the medium by records
   {
     /// Optical thickness of a voxel's diagonal, [channel][record], as pack_extinction in PhotonMedium.cl computes it
-    /// by voxels.
+    /// voxel by voxel.
     std::vector<float> extinction;
     std::vector<float> sigmaA, sigmaS; ///< 1/length, [record][component]
   };
@@ -178,8 +178,8 @@ public:
   /// PhotonMedium.cl stores it. By bricks: [channel][record of PhotonBricks].
   Buffer<float> sigma;
   Buffer<float> coefficients; ///< coefficients of the spline of n^2, SquaredIndex.cl
-  /// Octree nodes. SetNodes sets those of all voxels of the domain, as BrickedBytes; before, the array holds those of
-  /// the voxels of block.known, as pack_nodes of PhotonMedium.cl stores them
+  /// Octree nodes of the voxels: those of block.known, as pack_nodes of PhotonMedium.cl stores them, or, once SetNodes
+  /// was called, those of the domain, as BrickedBytes
   Buffer<cl_uchar> nodes;
 
 private:

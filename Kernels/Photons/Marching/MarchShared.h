@@ -136,7 +136,7 @@ typedef struct
 {
   ulong seed;       ///< seed of the random numbers
   ulong copyStride; ///< number of 64-bit numbers in one copy of the sums of deposits
-  /// Maximum number of scatterings of a photon; the photon is terminated at the collision after them.
+  /// Maximum number of scatterings of a photon; at the collision after the last one it is terminated.
   int mostScatterings;
   int first, count; ///< first photon of the launch, and number of photons
   int resumes;      ///< 1: photons that arrived from other blocks; 0: photons that start

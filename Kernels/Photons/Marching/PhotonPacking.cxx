@@ -92,8 +92,8 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
     const double omega = photon.direction[a] / length;
     ray.position[a] = static_cast<float>(position[a]);
     ray.direction[a] = static_cast<float>(omega);
-    // Photons are sorted by the point half a diagonal of the grid along their line, because all photons of a lamp in
-    // the volume start at the same point.
+    // Photons are sorted by a point on their line, half a diagonal of the grid ahead of them, because all photons of a
+    // lamp in the volume start at the same point.
     const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
     const int tiles = 1 << TileBits;
     ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
@@ -305,8 +305,8 @@ void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   FillInOrder(packed, photons, met, order);
 }
 
-/// Base by which an integer is split into a high and a low half, stored in two doubles. These are summed over ranks
-/// without rounding.
+/// Base by which an integer is split into a high and a low half, stored in two doubles. Sums of such halves over ranks
+/// have no rounding errors.
 constexpr double Half = 0x1p31;
 
 }

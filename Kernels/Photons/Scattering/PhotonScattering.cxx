@@ -81,8 +81,8 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 
 double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
 {
-  // numerics.md, Eq. (99d): the fraction of the step size is Seen divided by the largest relative jump of n^2 between
-  // neighbouring voxels, but at least Least.
+  // The fraction of the step size (numerics.md, Eq. (99d)) is `Seen` divided by the largest relative jump of n^2
+  // between neighbouring voxels, but at least `Least`.
   constexpr double Seen = 0.5, Least = 0.1;
   double jump = 0.0;
   const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),

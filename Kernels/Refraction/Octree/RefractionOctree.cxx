@@ -42,7 +42,7 @@ void Check(const OctreeSettings& settings)
     "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
 }
 
-/// Maximum differences of the index in the nodes of each level, as floats by AsBound.
+/// Maximum differences of the index in the nodes of each level, converted to floats by AsBound.
 std::vector<float> IndexTolerances(int levels, double tolerance)
 {
   return std::vector<float>(static_cast<std::size_t>(levels), AsBound(tolerance));

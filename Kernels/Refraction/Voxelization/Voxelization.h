@@ -74,8 +74,8 @@ struct SamplesInside
   /// UnitsOfSample(samples), x fastest. Overwritten for the next mesh.
   const Buffer<cl_ushort>& counts;
 
-  /// Position of the slab's voxels in the box: `runs` runs of `length` consecutive voxels; the first run begins at
-  /// voxel `first`, each further one `stride` voxels later.
+  /// Position of the slab's voxels in the box: `runs` runs of `length` consecutive voxels. The first run begins at
+  /// voxel `first`, each later run `stride` voxels after the one before.
   std::size_t first, length, stride, runs;
   std::size_t VoxelCount() const { return this->length * this->runs; }
 };

@@ -4,8 +4,8 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Voxels of a slab: runs of `length` consecutive voxels of a box; the first run begins at voxel `first`, each
-/// further one `stride` voxels later.
+/// Voxels of a slab: runs of `length` consecutive voxels of a box. The first run begins at voxel `first`, each later
+/// run `stride` voxels after the one before.
 typedef struct
 {
   float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, length
@@ -28,7 +28,7 @@ typedef struct
   float g;                       ///< mean cosine of the phase function
 } MaterialInfo;
 
-/// Rows of sample columns in a buffer, and the slab of voxels, processed at a time, that they cover.
+/// Rows of sample columns in a buffer. They cover a slab, the voxels that are processed at a time.
 typedef struct
 {
   int4 voxels;    ///< number of voxels of the slab along x, y, z

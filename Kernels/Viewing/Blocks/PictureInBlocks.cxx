@@ -66,8 +66,8 @@ void InOrder(int width, std::vector<RayOnItsWay>& rays)
   std::sort(rays.begin(), rays.end(), [&](const RayOnItsWay& a, const RayOnItsWay& b) { return place(a) < place(b); });
 }
 
-/// Splits a box into consecutive portions of at most `voxels` voxels: several slices, or several rows of one slice, at
-/// least one row.
+/// Splits a box into consecutive portions of at most `voxels` voxels. A portion is several slices, or several rows of
+/// one slice, but at least one row.
 std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
 {
   std::vector<VoxelBox> portions;

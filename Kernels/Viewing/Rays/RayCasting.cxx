@@ -21,7 +21,7 @@ namespace tyndall
 namespace
 {
 constexpr int RoundsAtMost = 16; ///< limit of a ray's path length: this many times the sum of the box's edges
-/// Length, in voxels, of the piece of a bent ray between two checks whether the refractive index around it is constant.
+/// Length, in voxels, of a bent ray's piece between two checks of whether the refractive index around it is constant.
 constexpr double BentStretch = 4.0;
 constexpr double SurfacePrecision = 1.0e-3; ///< accuracy, in voxels, of the point at which the surface splits a ray
 /// Number of rays that are created in one launch, 140 bytes each.
@@ -217,7 +217,7 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   Require(ends.empty() || ends.size() == pixels,
     "There are ends of " + std::to_string(ends.size()) + " rays for a picture of " + std::to_string(pixels) +
       " pixels.");
-  // Floats per pixel: radiance 3, alpha 1, depth 1; for a block transmittance 3, and surface light 3 (View.cl).
+  // Floats per pixel: 3 radiance, 1 alpha, 1 depth; for a block also 3 transmittance; 3 surface light (View.cl).
   this->Reserve((5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0)) * pixels, ends, starts);
   view.has.s[0] = !ends.empty();
   view.has.s[1] = !starts.empty();

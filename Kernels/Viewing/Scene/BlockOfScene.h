@@ -93,7 +93,7 @@ struct BlockOfScene
 std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, const std::array<int, 3>& size);
 
 /// The box of voxels that the arrays of a block must cover: its own voxels and a halo. If the correction for light at
-/// the surface is shown, it extends VoxelsBehindSurface voxels inwards from a face of the domain.
+/// the surface is shown, the box extends VoxelsBehindSurface voxels inwards from a face of the domain.
 /// @param own      the block's own voxels, not empty
 /// @param moments  whether light is shown by angular moments
 /// @param surface  whether outgoing radiance at the surface (SolvedLight::surface) may be shown

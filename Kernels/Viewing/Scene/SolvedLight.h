@@ -21,7 +21,7 @@ struct SolvedLight
   /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known.
   Field surface = {};
   /// scatteredMoments: angular moments of scattered light, LightField::scatteredMoments, with (degree + 1)^2 components
-  /// or 3 times as many. straightOn: the fraction of scattering that their solver treated as unscattered,
+  /// or 3 times as many. straightOn: the fraction of scattering that the solver of the moments treated as unscattered,
   /// LightField::straightOn. Null: not known. lampsApart: the lamps whose first scattering is not in the moments,
   /// LightField::lampsApart.
   Field scatteredMoments = {}, straightOn = {};

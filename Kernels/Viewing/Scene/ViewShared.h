@@ -198,8 +198,8 @@ typedef struct
   PhaseInfo phase;             ///< phase function, if it is equal in all voxels
   ViewedComponents components; ///< number of components of the medium's arrays
   float step;                  ///< step of the march, voxels
-  /// Lower bound of r^2 in the inverse-square law 1 / r^2, so that a voxel that contains a light stays finite. The
-  /// largest 1 / r^2 is then 3 / R^2, the mean of 1 / r^2 over a ball of radius R with the voxel's volume.
+  /// Lower bound of r^2 in the inverse-square law 1 / r^2, so that irradiance stays finite in a voxel that contains a
+  /// light. The largest 1 / r^2 is then 3 / R^2, the mean of 1 / r^2 over a ball of radius R with the voxel's volume.
   float nearestSquare;
   int firstLight, lights;   ///< lights of this launch, [firstLight, lights)
   int firstSlice, firstRow; ///< first slice and first row of voxels of this launch

@@ -94,8 +94,8 @@ struct ViewTraits
 
   bool ShowsMoments() const { return this->moments.degree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
-  /// Whether emission is packed separately from scattered light. It must be where scattered light is multiplied by the
-  /// phase function, since emission is not.
+  /// Whether emission is packed separately from scattered light. This is necessary if scattered light is multiplied by
+  /// the phase function, since emission is not.
   bool GlowsApart() const { return (this->knowsFlow || this->ShowsMoments()) && this->components[2] > 0; }
   /// Whether the light's mean direction is packed multiplied by the mean cosine g; g is then equal for all channels.
   bool FlowHasG() const
