@@ -26,7 +26,8 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Whether a block of eight voxels lies outside the box that contains all light; the box is limited along x and y only.
+// Whether a block of eight voxels lies outside the box that contains all light, along x or y. Positions along z are not
+// compared.
 inline bool is_beside(ScatteringVoxels at, ulong first)
 {
   if (at.width == 0)
@@ -78,8 +79,8 @@ inline void find_moments(
   }
 }
 
-// Writes the fluence of this scattering order of eight voxels to `order`, and adds their fluence and net flux to the
-// sums over all orders, `fluence` and `flux`.
+// Writes the fluence of eight voxels in this scattering order to `order`. Adds their fluence and net flux to the sums
+// over all orders, `fluence` and `flux`.
 inline void add_light(const __global float* moments, ulong voxels, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {
@@ -145,8 +146,8 @@ inline void pass_empty(const __global float* radiance, __global float* source, c
   EACH_VOXEL(KEEP_LIGHT)
 }
 
-// Adds the light of eight voxels without medium. For these voxels the sweep has stored, instead of the radiance along
-// each direction, its sums over the directions of each group.
+// Adds the light of eight voxels without medium. For these voxels the sweep has stored sums of the radiance over the
+// directions of each group, not the radiance along each direction.
 inline void take_sums(const __global float* radiance, ScatteringVoxels at, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {

@@ -10,7 +10,7 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t GroupSize = 64; ///< work-items per work-group
-/// work-items of the first launch; later launches are sized by the run time measured
+/// number of work-items in the first launch; the measured run time determines that of later launches
 constexpr std::size_t FirstBatch = 512;
 
 int RowsOf(int terms, bool netFlux, int width)
@@ -81,8 +81,8 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Copies to the device the factors of the sums that yield the scattering source along each direction. The lane of a
-/// direction is its place among the eight directions of its group. PairSums::Terms: factors of the terms,
+/// Makes the device arrays of the factors by which the scattering source along each direction is computed. The lane of
+/// a direction is its place among the eight directions of its group. PairSums::Terms: factors of the terms,
 /// [group][term][lane]; PairSums::Matrix: the matrix, [group][incident direction][lane]; PairSums::Passes: the rows of
 /// the matrix, one array each.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)

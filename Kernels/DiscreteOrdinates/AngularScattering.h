@@ -38,7 +38,7 @@ public:
 
   /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
   ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
-  /// @param skips  whether Scatter() skips blocks of VoxelsAtATime voxels none of which scatters
+  /// @param skips  whether Scatter() skips blocks of VoxelsAtATime voxels in which no voxel scatters
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
     bool positive, bool netFlux, std::size_t voxels, bool skips = false);
 

@@ -47,10 +47,9 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// Emission of a voxel that is transported by one of two methods, W / (length^3 sr); 0 if the other method transports
-/// it.
-/// @param emptyVoxels  true: emission transported along the separate quadrature OfVacuum, which is that of empty voxels
-///   if OfVacuum is set; false: all other emission
+/// Emission of a voxel, W / (length^3 sr), if the method that `emptyVoxels` selects transports it; else 0.
+/// @param emptyVoxels  true: sweeps along the quadrature OfVacuum, which transport the emission of empty voxels if
+///   OfVacuum is set; false: the method for all other emission
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
@@ -178,7 +177,7 @@ void ChannelArrays::AddLamps(
 
 /// Adds the uncollided light that empty voxels emit, and its first-collision source, which is computed from the mean
 /// direction of this light in each voxel.
-/// @param volume  medium, and arrays to which the sweep adds light: path integrals alone, which are 0 on entry
+/// @param volume  medium, and the deposit of the sweep; on entry the deposit has path integrals only, all 0
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
 {

@@ -17,9 +17,9 @@ namespace tyndall
 ///
 /// The default scheme is conservative (numerics.md, Eqs. (D7) to (D12)): an exponential step, stable and positive for
 /// any optical thickness of a voxel; scattering by the N terms of a SeparablePhaseFunction that keeps power and mean
-/// cosine exactly, after removal of its forward peak; uncollided light of lamps along exact rays, first scattered
-/// exactly in angle. It is of first order in the voxel edges for oblique directions. The published scheme is explicit,
-/// and unstable if sigma_t times a voxel edge is above 1; `doubts` then says so.
+/// cosine exactly, after removal of its forward peak; uncollided light of lamps along exact rays, whose first
+/// scattering is exact in angle. It is of first order in the voxel edges for oblique directions. The published scheme
+/// is explicit, and unstable if sigma_t times a voxel edge is above 1; `doubts` then says so.
 ///
 /// The iteration is source iteration, with the radiance of all directions in memory. For media that scatter light many
 /// times it is the accelerated iteration of light propagation maps, with sweeps by weighted diamond differences

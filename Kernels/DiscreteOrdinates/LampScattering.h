@@ -16,7 +16,7 @@ namespace tyndall
 struct LampTarget
 {
   /// Source of all directions, W / (length^3 sr), to which the first-collision source is added. On entry the source of
-  /// a voxel is its value here times `scale`.
+  /// a voxel is its element of this array times `scale`.
   const Buffer<float>& source;
   Buffer<float>& scale;        ///< factor of `source` by voxel; on return 1, because `source` has been multiplied by it
   const Buffer<float>& direct; ///< uncollided fluence, W / length^2; the lamp's is added to it

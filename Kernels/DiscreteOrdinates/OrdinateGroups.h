@@ -12,8 +12,8 @@ namespace tyndall
 constexpr int OrdinateLanes = 8; ///< number of directions in a group, which kernels process as one vector
 
 /// Distance in memory, in voxels, from the radiance of one group of directions to that of the next. It is at least the
-/// number of voxels of the grid, and such that the same voxel of different groups does not map to the same few cache
-/// lines (a power of two is ten times slower).
+/// number of voxels of the grid, and chosen so that the values of a voxel in different groups do not map to the same
+/// few cache lines (strides that are a power of two make sweeps ten times slower).
 constexpr std::size_t OrdinateStride(std::size_t voxels)
 {
   return (voxels + 127) / 128 * 128 + 8;

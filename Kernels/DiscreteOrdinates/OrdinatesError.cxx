@@ -17,15 +17,16 @@ namespace tyndall
 namespace
 {
 constexpr int FewestSpiralDirections = 16;
-/// Largest number of directions per cube face that the search for a target error tries. The second limit holds for
-/// singular values and for the full matrix of the phase function, whose cost rises with the square of this number.
+/// Largest number of directions per cube face that the search for a target error tries. The second limit holds if
+/// scattering uses the phase function's full matrix or its singular values, because their cost rises with the square of
+/// this number.
 constexpr int MostDirections = 400, MostWithMatrix = 144;
 
 /// Measured orders of convergence of solves that are not accelerated (numerics.md, section 10 b).
 constexpr double OrderInSpace = 1.0, OrderInDirections = 0.4;
 
-/// Settings that make solves on other grids use the spatial scheme that is used on the scene's own grid, and the orders
-/// of convergence of that scheme. Accelerated solves have the orders of convergence of light propagation maps.
+/// Settings with which solves on other grids use the same spatial scheme as the solve on the scene's own grid, and the
+/// orders of convergence of that scheme. Accelerated solves have the orders of convergence of light propagation maps.
 struct SpatialScheme
 {
   /// Collective.

@@ -56,7 +56,7 @@ struct SweptOrdinates
   std::vector<Direction> directions;
 };
 
-/// SweepOperator for the scattered light of TransportParts by discrete ordinates.
+/// Sweeps the scattered light of TransportParts by discrete ordinates.
 class OrdinatesTransport : public SweepOperator
 {
 public:
@@ -90,8 +90,8 @@ public:
   }
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
-  /// Does nothing: a sweep continues light that wraps around periodic axes (SweepRequest::mostPlanes) until at most the
-  /// fraction WrappedLeft is in transit, or for MostLaps laps.
+  /// Does nothing, because no light is kept for the next sweep: each sweep follows light around periodic axes until at
+  /// most the fraction WrappedLeft is in transit, or for MostLaps laps.
   void Forget() override {}
 
 private:

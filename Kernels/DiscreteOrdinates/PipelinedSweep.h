@@ -49,7 +49,7 @@ class PipelinedSweep : public OrdinateSweep
 {
 public:
   /// Collective. All arguments must outlive this.
-  /// @param grid  grid of this rank's block; of one voxel if the block is empty; this voxel exchanges no light with
+  /// @param grid  grid of this rank's block; if the block is empty, a grid of one voxel that exchanges no light with
   ///   blocks
   /// @param faces  boundary conditions of the whole grid
   /// @throws InvalidInput on every rank if the blocks have a cyclic sweep order
@@ -65,7 +65,7 @@ public:
 private:
   struct Octant
   {
-    /// Marching axis of the octant and signs of its directions; its list of rays is not used and empty.
+    /// Marching axis of the octant and signs of its directions. The list of bundles is empty, because it is not used.
     ParallelBundles way;
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;

@@ -56,9 +56,9 @@ inline int4 swept_range(int up, int beyond, int first, int last, int size)
   return (int4)(up ? first : last, up ? 1 : -1, in_box, in_box + outside);
 }
 
-// Reciprocal weight of the outgoing radiance in weighted diamond differences: the weight is 1 / (1 - T) - 1 / x with T
-// = exp(-x), approximated here by 1 / (1 + x + ... + x^6 / 720) (numerics.md, Eq. (D15)). 2 in vacuum, 1 in opaque
-// voxels.
+// Reciprocal weight of the outgoing radiance in weighted diamond differences: the weight is 1 / (1 - T) - 1 / x, where
+// T = exp(-x) is approximated by 1 / (1 + x + ... + x^6 / 720) (numerics.md, Eq. (D15)). The result is 2 in vacuum, 1
+// in opaque voxels.
 //   x  optical length of the voxel along the direction, between faces normal to an axis, >= 0
 inline real reciprocal_weight(real x)
 {
@@ -168,7 +168,7 @@ static inline void keep_sums(__global float* block, int voxel, real mean, real a
 // of directions, or per direction. In a sweep downwind of a box, x, y and z hold on entry the radiance that left the
 // box, and the light of voxels in the box is set to 0.
 //   light     source, W / (length^3 sr); with ByDirection by direction, replaced by the mean radiance
-//   scale     factor by voxel for all sources, without InSums
+//   scale     factor by voxel for the sources of all directions; not used with InSums
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
 //             length of the mean chord
 //   across    [group][x, y, z, angle][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// largest chord through a voxel, in voxel edges, assumed for directions along which nothing varies
+/// upper bound of the chord of a direction through a voxel, in voxel edges, for directions along which nothing varies
 constexpr double LongestChord = 1e6;
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
@@ -72,7 +72,7 @@ UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups&
 std::size_t UpwindSweep::Bytes(const Grid& grid, const OrdinateGroups& groups)
 {
   const std::size_t faces = FaceVoxels(grid, 0) + FaceVoxels(grid, 1) + FaceVoxels(grid, 2);
-  // the factor 2 includes the radiance that leaves the box of ApplyWithin()
+  // factor 2: a second set of arrays holds the radiance that leaves the box of ApplyWithin()
   return 2 * sizeof(float) * groups.Lanes() * faces;
 }
 

@@ -111,7 +111,7 @@ public:
   /// Fraction of the groups of directions that carry incident light.
   double LitPart(const IncomingRadiance& incoming) const;
 
-  /// Sweeps the box alone, for an order whose source is zero outside of it and without incident light. The radiance
+  /// Sweeps the box alone, for an order without incident light and without sources outside of the box. The radiance
   /// that leaves the box is added to that of earlier such orders, for ApplyBeyond(). There must be no periodic axis and
   /// no reflecting face.
   /// @return power that leaves the box, through its own faces

@@ -31,8 +31,8 @@ double ThicknessOf(const Medium& medium, std::size_t voxel, std::size_t axis, in
   return medium.grid.spacing[axis] * (medium.sigma_a.At(voxel, channel) + medium.sigma_s.At(voxel, channel));
 }
 
-/// Distance from a voxel's centre upstream to the mean position of collisions of light that decays as exp(-k x), in
-/// voxels.
+/// How far the mean position of collisions is displaced upstream from a voxel's centre, in voxels, for light that
+/// decays as exp(-k x).
 double NearerBy(double k)
 {
   return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
@@ -64,7 +64,7 @@ public:
   {
   }
 
-  /// Distance from a voxel's centre upstream along an axis to the mean position of collisions, in voxels.
+  /// How far the mean position of collisions is displaced upstream along an axis from a voxel's centre, in voxels.
   double Nearer(std::size_t voxel, std::size_t axis) const
   {
     const double along = this->Image.meanDirection.At(voxel, static_cast<int>(axis));
@@ -169,8 +169,8 @@ PropagationSettings AsSweep(const LatticeSettings& settings)
   return of;
 }
 
-/// Sets the first moments along a periodic axis of one voxel to 0: there the voxel is its own neighbour, and light that
-/// is moved across its face remains in it.
+/// Sets the first moments along a periodic axis of one voxel to 0: the voxel is its own neighbour along that axis, so
+/// light that is moved across its face remains in it.
 void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings, std::vector<float>& moments)
 {
   for (std::size_t i = 0; i < moments.size(); ++i)

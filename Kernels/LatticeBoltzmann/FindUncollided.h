@@ -26,12 +26,12 @@ struct Uncollided
   /// Incident power that neither collided nor escaped, W; set on the same rank as `escaped`.
   Rgb lost = {};
 
-  /// Distance from a voxel's centre towards a face to the mean position of collisions, in voxels, 0 to 1/2.
+  /// How far the mean position of collisions is displaced from a voxel's centre towards a face, in voxels, 0 to 1/2.
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
-/// Distance from a voxel's centre upstream to the mean position of collisions of a beam along an axis, in voxels, 0 to
-/// 1/2 (numerics.md, Eq. (L14), k = sigma_t h).
+/// How far the mean position of collisions of a beam along an axis is displaced upstream from a voxel's centre, in
+/// voxels, 0 to 1/2 (numerics.md, Eq. (L14), k = sigma_t h).
 double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
 /// Computes the uncollided light in each known voxel (own or ghost voxel of this rank): the light given by another

@@ -21,12 +21,12 @@ namespace tyndall
 /// environment.
 ///
 /// Conservative scheme: collisions are scaled so that densities are positive and power is conserved for any optical
-/// thickness of a voxel; in voxels above 4/3 mean free paths (with 18 links), links reflect a fraction of the light.
-/// Light that crosses into a lower refractive index is partly returned, according to total internal reflection, so that
-/// fluence / n^2 diffuses, and is uniform in thermal equilibrium. Light of sky and faces is incident with its radiance
-/// times n^2. The steady state is solved for directly (SteadyLattice.h), unless the settings request lattice steps.
-/// Published scheme: the explicit collisions of the paper, without refraction. Densities oscillate and grow where
-/// sigma_t h is above 1; a warning says so.
+/// thickness of a voxel; in voxels thicker than 4/3 mean free paths (with 18 links), links reflect a fraction of the
+/// light. Light that crosses into a lower refractive index is partly returned, according to total internal reflection,
+/// so that fluence / n^2 diffuses, and is uniform in thermal equilibrium. Light of sky and faces is incident with its
+/// radiance times n^2. The steady state is solved for directly (SteadyLattice.h), unless the settings request lattice
+/// steps. Published scheme: the explicit collisions of the paper, without refraction. Densities oscillate and grow
+/// where sigma_t h is above 1; a warning says so.
 ///
 /// The result is a diffusion approximation: inaccurate where light is scattered rarely, with anisotropic scattering
 /// treated by the similarity relation. In thick voxels the conservative scheme resolves where light is first scattered:

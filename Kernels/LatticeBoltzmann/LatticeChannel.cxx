@@ -26,8 +26,7 @@ public:
 
   /// Takes the steps.
   /// @param before  steps taken and time spent before, which count towards the limits of the settings
-  /// @param rows  receives one convergence row each time the fluence at the probes, evenly spread voxels, is
-  ///   compared
+  /// @param rows  receives one convergence row for each comparison of the fluence at the probes (evenly spread voxels)
   /// @return fluence after the last step
   /// @throws InvalidInput if densities have overflowed (explicit collisions in optically thick voxels)
   std::vector<float> Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows);
@@ -218,7 +217,8 @@ double LatticeAccount::CountFaces(LightField& light) const
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
   const std::vector<float> inwards =
-    // By reciprocity, this is also the light that enters each voxel from outside if the fluence outside is 1.
+    // By reciprocity, the light that would leave each voxel at fluence 1 is also the light that enters it if the
+    // fluence outside is 1.
     this->Photons.LeavingOfOne();
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)

@@ -41,7 +41,8 @@ public:
   /// Whether the medium scatters anisotropically on any rank.
   bool IsAnisotropic() const { return !this->Scene.IsIsotropic() && this->Scene.Traits().scatters; }
 
-  /// Extends values by voxel of the block to known voxels: copies those of ghost voxels from their owners. Collective.
+  /// Extends an array over the block's voxels by the values of its ghost voxels, copied from the ranks that own them.
+  /// Collective.
   std::vector<float> WithGhosts(std::vector<float> own, int components) const;
 
   /// Converts `light` to the user's units and channels, and adds entries to its leftOut. Collective.

@@ -62,8 +62,8 @@ bool HasCubicVoxels(const Grid& grid);
 /// @throws InvalidInput if `directions` is not 6 or 18, a number is out of its range or the tolerance is not positive
 void Check(const LatticeSettings& settings);
 
-/// Name of the setting that makes the solver take steps, which works on one rank only, instead of solving for the
-/// steady state; text for an error, empty if there is no such setting.
+/// Name, for the text of an error, of the setting that makes the solver take lattice steps, which is possible on one
+/// rank only. Empty if the solver finds the steady state directly.
 std::string NotInBlocks(const LatticeSettings& settings);
 
 /// Settings for the light propagation maps that compute the uncollided light of a lattice solve.

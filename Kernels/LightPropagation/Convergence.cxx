@@ -26,8 +26,8 @@ constexpr double NextToAll = 1e-3;
 
 constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
 constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
-/// An imbalance is relative to the incoming power of its channel or, if that is smaller than this fraction of the
-/// incoming power of the brightest channel, relative to this fraction.
+/// An imbalance is relative to the incoming power of its channel or, if that is smaller, to this fraction of the
+/// incoming power of the brightest channel.
 constexpr double FaintChannel = 1e-3;
 constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 
@@ -114,8 +114,8 @@ double ImbalanceOf(const EnergyBalance& balance)
   });
 }
 
-/// Fraction of the incoming power that is impossible, even if the balance holds: absorbed or escaped power below 0, or
-/// more power still in transport than incoming.
+/// Physically impossible power, as a fraction of the incoming power: absorbed or escaped power below 0, or more power
+/// still in transport than has come in. The balance may hold nevertheless.
 double ImpossiblePart(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {

@@ -102,8 +102,8 @@ private:
       this->TheGrid.VoxelVolume() / this->TheGrid.spacing[axis];
   }
 
-  /// For each group of directions, the radiance in the voxels at the face, perpendicular to an axis, through which they
-  /// leave the box, summed along the rows of the face.
+  /// For each group of directions: radiance in the voxels at the face through which these directions leave the box (the
+  /// face perpendicular to `axis`), summed along each row of the face.
   std::vector<float> SumsLeaving(const Buffer<float>& radiance, int axis) const
   {
     const std::array<std::size_t, 3> strides = this->TheGrid.Strides();

@@ -45,8 +45,8 @@ __kernel void sum_cells(
   }
 }
 
-// Excess of the current of a source that is constant in each voxel (numerics.md, Eq. (51)) over that of a linear
-// source, divided by the first term of its expansion in tau (f of Eq. (76g)); accurate to 1e-4 up to tau = 1.5.
+// A source that is constant in each voxel causes a larger current than a linear source (numerics.md, Eq. (51)). Returns
+// this excess divided by the first term of its expansion in tau (f of Eq. (76g)), accurate to 1e-4 up to tau = 1.5.
 inline float part_of_first_term(float tau)
 {
   return 1.0f / (1.0f + tau * (0.183f + 0.0163f * tau));

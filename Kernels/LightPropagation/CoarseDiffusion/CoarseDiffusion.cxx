@@ -172,7 +172,7 @@ std::vector<CoarseDiffusion::Powers> CoarseDiffusion::ScatterOrder(
 
 /// Solves for the fluence of all later orders, from the power that the last sweep scattered and the power in flight.
 /// @param source  source of the last sweep's scattered light, W / (length^3 sr)
-/// @param magnitude  sum of its absolute values, W
+/// @param magnitude  sum of the absolute values of `source`, W
 /// @param onTheWay  power in flight around periodic axes, W
 void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, double magnitude, double onTheWay) const
 {

@@ -32,8 +32,8 @@ public:
   /// Fetches from the neighbouring ranks the values of the voxels just outside the faces of this block. Collective.
   /// @param byFaces  values of this block by voxel face, [channel][face][voxel]
   BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
-  /// Describes to an uncollided source (UncollidedSource.h) the medium through which it transports its light, and the
-  /// arrays `deposit` to which it adds that light.
+  /// Describes, for an uncollided source (UncollidedSource.h), the medium that its light crosses and the arrays
+  /// `deposit` to which the light is added.
   UncollidedVolume VolumeOf(const Deposit& deposit, const AngularBasis* basis);
 
 private:

@@ -31,7 +31,8 @@ public:
   /// power already assigned to each. Powers below 0, which rounding produces at dark faces, become 0; their sum is
   /// kept.
   void ShareEscaped(const Rgb& watts = {});
-  /// Replaces the unaccounted power: still in flight, or in sources that no sweep has carried.
+  /// Sets the unaccounted power of a channel: the power still in flight, and the power of sources that no sweep has
+  /// transported.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
   /// Scales absorbed and escaped powers down if their sum exceeds the incoming power, so that no unaccounted power is

@@ -17,8 +17,8 @@ namespace tyndall
 ///
 /// The rays of a sweep do not cross all cells equally often. The reflected radiance of a cell is therefore the
 /// reflected power divided by the power that radiance 1 carries into this cell along those rays, so that uniform light
-/// stays uniform. Uncollided light of lamps leaves along other rays, without that pattern: its reflected power is
-/// divided by the mean of that power over the face.
+/// stays uniform. Uncollided light of lamps leaves along other rays, without that pattern. Its reflected power is
+/// therefore divided by the mean, over the face, of the power that radiance 1 carries into a cell.
 class FaceReflection
 {
 public:

@@ -184,8 +184,8 @@ void LightSources::FindEmission()
   }
 }
 
-/// Splits the environment into peaks, which become lamps, and a smooth part, for the quadrature that transports the
-/// smooth part.
+/// Splits the environment into peaks, which become lamps, and a smooth part, which can be resolved by the quadrature
+/// that transports it.
 SplitEnvironment LightSources::SplitFar(const Environment& environment) const
 {
   return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());

@@ -36,7 +36,7 @@ struct UncollidedDirections
 /// most half as long again. The automatic choice is 0 if a face reflects; with DSA and angular moments, to save memory;
 /// and with coarse-mesh DSA, where more directions would need the escape correction, which would change the light of
 /// lamps as well. With discrete ordinates (settings.alongRays is false), only light of faces uses the chosen
-/// directions, at least as many as scattered light; with DSA, sweeps also carry this light.
+/// directions, which are at least as many as for scattered light; with DSA, sweeps also carry the light of faces.
 /// @param usual  quadrature of scattered light; unless it is fitted (DirectionSet::orbits), the automatic choice is 0
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(

@@ -12,9 +12,9 @@ namespace tyndall
 {
 namespace
 {
-/// Largest number of passes (OwedPower::Collect()) in which the power that raising negative fluence added is subtracted
-/// from neighbouring voxels. Power that a pass cannot subtract from the direct neighbours of a voxel is passed one
-/// voxel farther by the next one.
+/// Raising negative fluence adds absorbed power, which is then subtracted from neighbouring voxels in at most this
+/// number of passes (OwedPower::Collect()). Each pass moves the power that the direct neighbours of a voxel cannot give
+/// one voxel farther.
 constexpr int MostTurns = 50;
 /// A fluence that is below its uncollided part by at most this fraction of that part is raised without subtracting
 /// power elsewhere.
@@ -45,8 +45,8 @@ public:
   }
 
   /// Subtracts the owed power, which raised voxels absorb in addition, from the power that their neighbours absorb. If
-  /// the neighbours of a voxel absorb less than it owes, each of them owes an equal share of it in the next call. A
-  /// neighbour whose fluence becomes negative is raised, and owes the difference. Collective.
+  /// the neighbours of a voxel absorb less than it owes, each of them owes an equal share of its debt in the next call.
+  /// A neighbour whose fluence becomes negative is raised, and owes the difference. Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());

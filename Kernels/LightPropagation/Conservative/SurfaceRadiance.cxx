@@ -142,8 +142,8 @@ std::array<double, 4> Leaving(const Surface& s)
   return radiance;
 }
 
-/// Lamp light that collides in a cell's voxel, relative to that expected from the irradiance of the voxel's faces on
-/// the box.
+/// Lamp light that collides in a cell's voxel, divided by the amount expected from the lamps' irradiance of those faces
+/// of the voxel that lie on the box.
 /// @param fluence  uncollided fluence of lamps in the voxel, W / length^2
 double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std::vector<Light>& lamps,
   const BoxFaceCell& cell, int channel, double fluence)

@@ -72,8 +72,8 @@ UncollidedLight::UncollidedLight(
   this->CountAbsorbed();
 }
 
-/// Whether first moments are needed, of the light of lamps or of uncollided light given by another solver: in optically
-/// thick voxels the position of first collisions matters.
+/// Whether first moments are needed for the light of lamps, or for uncollided light given by another solver. They are
+/// in optically thick voxels, where the position of first collisions matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && (!this->Parts.Lights.Lamps.empty() || this->Parts.Lights.Given) &&

@@ -3,8 +3,8 @@
 
 #include "Device/SharedTypes.h"
 
-/// Part of the reciprocal weight of the transport correction that grows with the optical length of a voxel, divided by
-/// that length (numerics.md, Eq. (55)).
+/// The reciprocal weight of the transport correction has a term that grows with the optical length tau of a voxel
+/// (numerics.md, Eq. (55)). This is that term, divided by tau.
 #define TRANSPORT_FALL(tau) ((tau) * (0.25f + 0.075f * (tau) / (1.0f + 0.015625f * (tau) * (tau))))
 
 SHARED_BEGIN
@@ -80,8 +80,8 @@ typedef struct
 enum
 {
   BorderNet = 0, ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
-  /// Transport correction (the sweep's deviation from diffusion) of BorderNet; accurate only in sums over a face of the
-  /// box
+  /// Transport correction (the sweep's deviation from diffusion) to be added to BorderNet; accurate only in sums over a
+  /// face of the box
   BorderShare = 1,
   BorderSeeming = 2, ///< outgoing power in the sweep (estimated, numerics.md, Eq. (61))
   /// Weight of the transport correction if several faces of the voxel lie on the box's boundary, else -1;
@@ -95,7 +95,7 @@ enum
 /// Rows of the array `faces`: power by cell of the box's faces, W.
 enum
 {
-  FaceCame = 0,  ///< power that the face reflected and that was incident in the last sweep
+  FaceCame = 0,  ///< power that the face reflected into the last sweep
   FaceGiven = 1, ///< reflected power of uncollided light, which sweeps do not trace
   FaceLeft = 2,  ///< outgoing power in the sweep
   FaceLeaves = 3 ///< outgoing power of the diffusion solution

@@ -77,7 +77,7 @@ typedef struct
   const __global float* faces;
 } diffusion_arrays;
 
-// Index of the cell of face d of the box at a voxel (Medium/BoxFaces.h).
+// Index of a cell of the box's faces (Medium/BoxFaces.h): the cell on face d at the voxel with indices `at`.
 static int cell_of_face(const DiffusionLayout* layout, const int* at, int d)
 {
   const int* n = layout->size;
@@ -307,8 +307,8 @@ static exact power_of_border(const DiffusionLayout* layout, const diffusion_arra
   return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
 }
 
-// Net outgoing power through face d of voxel i by the solution of the diffusion system, W. `share`, [face], the parts
-// of remainder_of_borders(), is used only if the face lies on the box's boundary.
+// Net outgoing power through face d of voxel i by the solution of the diffusion system, W. `share` has the parts of
+// remainder_of_borders() by face, used only if face d lies on the box's boundary.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {

@@ -138,7 +138,7 @@ public:
   ExactValues& Solved() { return this->Solution; }
   void FindFlux(); ///< with angular moments: computes the moments of degree 1 of the solution, Eq. (70a)
   /// This rank's sums for Anderson mixing of the solution.
-  /// @param alike  whether voxels that hardly scatter have the same weight in the change as others
+  /// @param alike  whether voxels that hardly scatter have the same weight in the change as all other voxels
   AndersonMixing::Sums SumsOfChange(bool alike) const;
   void MixBy(const AndersonMixing::Sums& sums) { this->Mixing.Mix(this->Next, this->Solution, sums); }
 

@@ -247,7 +247,8 @@ __kernel void put_places(const __global float* picked, const __global int* place
   values[places[get_global_id(0)]] = picked[get_global_id(0)];
 }
 
-// Adds the correction of a coarser level to the values of the finer one, constant over the fine voxels of a coarse one.
+// Adds the correction of a coarser level to the values of the finer level; all fine voxels of a coarse voxel get the
+// same correction.
 __kernel void level_prolong(
   MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
 {

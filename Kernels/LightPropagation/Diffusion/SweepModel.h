@@ -27,8 +27,8 @@ CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& direct
 
 /// Sum of w mu over the directions with cosine mu > 0 to `axis`.
 double HalfRange(const DirectionSet& set, int axis);
-/// The part of HalfRange() of the directions whose rays march along the axis `marching`. A direction whose rays march
-/// along several axes contributes a fraction to each.
+/// Contribution to HalfRange() of the directions whose rays march along the axis `marching`. A direction whose rays
+/// march along several axes contributes a fraction to each.
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching);
 
 /// Properties of a sweep from which the diffusion system predicts the powers that the sweep carries through faces if

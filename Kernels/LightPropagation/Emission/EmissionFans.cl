@@ -180,8 +180,8 @@ static real spread(const turned_scene* s, const fan_lines* lines, float layers)
   return inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f));
 }
 
-// Traces the rays of fans, each the rays from one point of the emitting box. One work-item per SIMD packet of rays, row
-// of rays, and fan.
+// Traces the rays of fans; a fan consists of all rays from one point of the emitting box. One work-item per SIMD packet
+// of rays, row of rays, and fan.
 // points    origins of the fans in the permuted scene, [fan][FanPointFloats]
 // tangents  tangents of a row's rays along the second axis, without the offset of the fan
 // outside   extinction outside the emitting box, see lay_out()
@@ -342,8 +342,8 @@ static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_
   return fan->faceFirst + (ulong)v * sizes[0] + u;
 }
 
-// Adds the light of the fans that follow_fan() has just traced, FanInfo::points of them, to the sums over all fans. One
-// work-item per SIMD packet of voxels, row, and layer.
+// Adds the light of the FanInfo::points fans that follow_fan() has just traced to the sums over all fans. One work-item
+// per SIMD packet of voxels, row, and layer.
 //   path         fluence, W / length^2, [voxel]
 //   flux         net flux, W / length^2, [x, y, z][voxel]
 //   halves       fluence due to the first half of the fans, W / length^2, [voxel]

@@ -297,7 +297,8 @@ bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group
   });
 }
 
-/// Moves the emission of a group's voxels above the limit to `peak`; the remainder stays in `smooth`.
+/// For each voxel of a group, moves the part of the emission that exceeds the limit to `peak`; the remainder stays in
+/// `smooth`.
 void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
   std::vector<float>& smooth)
 {

@@ -353,9 +353,9 @@ private:
   Buffer<float> Points, Emission; ///< arguments of gather_voxels(): lattice, and emission
   Rgb Emitted = {};               ///< emitted power of the peak, W, by channel
   Buffer<float> Path, Flux;
-  /// By voxel, 1: its light is known from fans of rays; less: rays are traced for this voxel alone
+  /// By voxel, 1: its light is known from fans of rays; below 1: rays are traced for this voxel alone
   Buffer<float> Found;
-  /// By face cell, 1: its light is known from fans of rays; less: rays are traced for this cell alone
+  /// By face cell, 1: its light is known from fans of rays; below 1: rays are traced for this cell alone
   Buffer<float> CellsFound;
   Buffer<float> FaceLight; ///< outgoing flux density through the box's faces, W / length^2, [cell][channel]
   Rgb Taken = {};          ///< power that the medium removes from the gathered light, W, by channel

@@ -80,7 +80,7 @@ struct LayerSource
   /// @param cosine  cosine of the angle between beam and axis of the layers, > 0
   /// @param fromTop  the beam enters at the top; false: at the bottom
   /// @param sum, difference  sum and difference of the first-scattered light forward and backward with respect to the
-  ///   beam, where it enters, at the quadrature's nodes, times the square root of their weights
+  ///   beam, where the beam enters, at the quadrature's nodes, times the square root of their weights
   void AddBeam(const LayerModes& modes, const LayerOperator& layer, double depth, double cosine, bool fromTop,
     const Eigen::VectorXd& sum, const Eigen::VectorXd& difference);
 

@@ -36,7 +36,7 @@ double PowerUnitFor(const AllThatShines& all);
 /// @throws InvalidInput  if no voxel can have a fluence of 1.2e-38 W / length^2, the least normal float
 void CheckBrightness(const Grid& grid, const AllThatShines& all);
 
-/// A scene converted to `unit` of power, W.
+/// A scene whose powers are expressed as multiples of `unit`, W.
 struct SceneInUnits
 {
   SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
@@ -46,7 +46,7 @@ struct SceneInUnits
   Illumination illumination; ///< the illumination, whose given uncollided light refers to `uncollided`
 };
 
-/// Converts light from `unit` of power back to W.
+/// Converts the powers of light from multiples of `unit` back to W.
 /// @throws InvalidInput  if a value overflows a float
 void ToWatts(LightField& light, double unit);
 
@@ -56,11 +56,11 @@ void ToWatts(LightField& light, double unit);
 /// Unit of length in which a box is solved, in units of the grid; 1 if its longest spacing is between 2^-20 and 2^20.
 double LengthUnitOf(const Grid& grid);
 
-/// A grid converted to `unit` of length.
+/// Copy of a grid with lengths expressed as multiples of `unit`.
 Grid InUnit(Grid grid, double unit);
 
-/// A scene converted to `unit` of length. Powers of the converted scene are those of the original one divided by the
-/// square of the unit (see MultiplyPowers).
+/// A scene whose lengths are expressed as multiples of `unit`. Powers of the converted scene are those of the original
+/// one divided by the square of the unit (see MultiplyPowers).
 struct SceneInLengths
 {
   SceneInLengths(const Medium& medium, const Illumination& illumination, double unit);

@@ -32,8 +32,8 @@ double PartAbove(const PhaseFunction& function, double level)
   return sum;
 }
 
-/// Level at which PartAbove(function, level) is `part`: the integral, over the forward hemisphere, of the excess of the
-/// phase function over this level.
+/// Finds the level at which PartAbove(function, level), the integral of the excess of the phase function over this
+/// level, is `part`.
 double LevelOf(const PhaseFunction& function, double part)
 {
   double low = 0.0, high = std::max(function.Value(1.0), 1e-30);

@@ -56,8 +56,8 @@ public:
       this->Collisions(LayerSource(Nodes), in, up, down) };
   }
 
-  /// Response of the layer to first collisions in it of total power 1 whose density is proportional to exp(-fall z) at
-  /// optical depth z.
+  /// Response of the layer to first collisions in it. Their total power is 1; their density is proportional to
+  /// exp(-fall z) at optical depth z.
   Response OfFalling(double albedo, double fall) const
   {
     const double lost = -std::expm1(-fall * this->Depth);

@@ -143,8 +143,8 @@ Deposit DiffusionAcceleration::DepositOfSweep()
   return { whole.path, nullptr, &this->Arrays.PartialCurrents(), nullptr, whole.faceOut, whole.spreadsAside };
 }
 
-/// Sweeps the current source and the boundary light, which is incident in every sweep, into path integrals and partial
-/// currents.
+/// Sweeps once: carries the light of the current source and the boundary light, which is incident in every sweep, to
+/// path integrals and partial currents.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   this->TheDomain.Collective([&] {

@@ -172,7 +172,7 @@ void FaceBalance::Count(EnergyLedger& ledger) const
   }
 }
 
-/// Optical thickness along the longest voxel edge of the voxel at each cell of the box faces, [channel][cell].
+/// Optical thickness, along its longest edge, of the voxel at each cell of the box faces, [channel][cell].
 std::vector<double> FaceBalance::OpticalLengths(const Medium& medium) const
 {
   const std::array<double, 3>& h = this->Faces.Box().spacing;
