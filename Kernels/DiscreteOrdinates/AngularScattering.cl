@@ -168,8 +168,8 @@ inline void take_sums(const __global float* radiance, ScatteringVoxels at, ulong
 }
 
 // Computes the angular moments of eight voxels, and adds their light to fluence and net flux, with the arguments of
-// scatter_terms. Returns whether the source remains to be computed from the moments; if the voxels do not scatter, it
-// is set to 0 here. Voxels outside the box with light are not changed.
+// scatter_terms. Returns whether the source must still be computed from the moments; it is set to 0 here if the voxels
+// do not scatter. Voxels outside the box with light are not changed.
 inline bool take_light(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* angles, const __global float* sigma_s, __global float* order,
   __global float* fluence, __global float* flux, const __global uchar* empty, ScatteringVoxels at, ulong first)

@@ -25,8 +25,8 @@ public:
   /// @param scene, angles  must outlive this
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
-  /// Selects the transport of the emission of empty voxels (sigma_t = 0): as uncollided light along a separate
-  /// quadrature, added by AddLamps() (UncollidedEmission.h), instead of by EmitEvenly(). Collective.
+  /// Makes AddLamps(), instead of EmitEvenly(), add the emission of empty voxels (sigma_t = 0): as uncollided light
+  /// along a separate quadrature (UncollidedEmission.h). Collective.
   void TakeVacuumApart(PropagationSettings settings);
   /// Sets Emits() and Scatters() to whether voxels of any rank emit or scatter. To be called before all other methods.
   /// Collective.

@@ -80,7 +80,7 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
 
 // Adds the first-collision source of parallel light, which scatters into each direction by the same factor in every
 // voxel.
-//   source  W / (length^3 sr). On entry a voxel's source is its value here times `scale`; on return, the value itself
+//   source  W / (length^3 sr). On entry the source of a voxel is its element times `scale`; on return, its element
 //   parts   [group][8], 1/sr: fraction of the scattered light per solid angle (LampScattering::PartsAlong)
 __kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* parts, ulong stride, float per_volume)
@@ -92,7 +92,7 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
 
 // Adds the first-collision source of light whose direction varies by voxel: of a lamp with a position or, with WAYS, of
 // given mean directions.
-//   source  W / (length^3 sr). On entry a voxel's source is its value here times `scale`; on return, the value itself
+//   source  W / (length^3 sr). On entry the source of a voxel is its element times `scale`; on return, its element
 //   omegas  [group][x, y, z, solid angle][8]
 //   table   phase function at equidistant angles, 1/sr
 //

@@ -22,7 +22,8 @@ namespace
 constexpr double MostTilt = 0.98;
 constexpr double Least = 1e-9; ///< smallest value of the tabulated phase function, 1/sr
 constexpr int TableSize = 1024;
-/// Highest degree of the Legendre moments; higher ones vanish in the mean over a direction's solid angle.
+/// Highest degree of the Legendre moments that are summed; averaged over a direction's solid angle, higher moments are
+/// negligible.
 constexpr int MeansDegree = 256;
 
 /// Phase function averaged over the solid angle of one direction, 1/sr, at equidistant angles from 0 to pi. All values

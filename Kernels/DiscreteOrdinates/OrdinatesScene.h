@@ -100,7 +100,8 @@ struct FarLight
   std::vector<Light> peaks;  ///< peaks of the environment, represented by parallel beams
 };
 
-/// Chooses the directions of a solve, and splits the light of sky and environment into radiance along them and peaks.
+/// Chooses the directions of a solve, and splits the light of sky and environment into peaks and radiance along the
+/// directions.
 /// @param perFace  directions per cube face of the solve
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 

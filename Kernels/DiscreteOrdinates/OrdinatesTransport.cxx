@@ -111,8 +111,8 @@ private:
     return source || this->Request.faceIn || this->Parts.Problem.Settings().IsPeriodic();
   }
   void Spread(int channel, const Buffer<float>* source);
-  /// Array of the deposit that receives the light through the faces of voxels, and its number of values per voxel: 6
-  /// partial currents; or 3 components of net flux, unless the angular moments contain it; or 0.
+  /// Array of the deposit for the light through the faces of voxels, and its number of values per voxel: 6 (partial
+  /// currents), 3 (net flux, unless the angular moments contain it) or 0 (no array).
   std::pair<const Buffer<float>*, int> Through() const
   {
     const Deposit& deposit = this->Request.deposit;
@@ -138,8 +138,8 @@ private:
   Buffer<float> Sums;     ///< SweptSums::values
   Buffer<float> Nothing;  ///< isotropic source of 0
   Buffer<float> Radiance; ///< of all directions; empty if scattering is isotropic
-  /// In the layout of UpwindSweep.cl: values of the angular functions and of the beams along each direction (Values),
-  /// and values of the angular functions times the direction's solid angle (Weights).
+  /// Values: angular functions and distributions of the beams along each direction. Weights: angular functions times
+  /// the direction's solid angle. Both have the layout of UpwindSweep.cl.
   Buffer<float> Values, Weights;
   Buffer<cl_int> Up;
   std::vector<std::unique_ptr<Channel>> Channels;

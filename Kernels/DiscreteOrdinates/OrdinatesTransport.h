@@ -17,9 +17,9 @@ namespace tyndall
 /// spherical harmonics.
 bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 
-/// Solves a scene with the iteration of light propagation maps. Uncollided light is computed as for these maps, but
-/// that of the box's faces only in source iteration. All other light is swept by discrete ordinates (UpwindSweep.h).
-/// Isotropic scattering is solved by source iteration or diffusion synthetic acceleration (SourceIteration.h,
+/// Solves a scene with the iteration of light propagation maps. Uncollided light is computed as for these maps, except
+/// for light of the box's faces with DSA. All other light is swept by discrete ordinates (UpwindSweep.h). Isotropic
+/// scattering is solved by source iteration or diffusion synthetic acceleration (SourceIteration.h,
 /// DiffusionAcceleration.h), whichever is predicted to be faster. If uncollided light is given by another solver,
 /// source iteration is used, since DSA would overestimate the scattering of this light. Anisotropic scattering is
 /// solved here only by DSA, if many orders are needed, in spherical harmonics up to the degree that `settings.terms`

@@ -16,8 +16,8 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
-/// Largest ratio of successive scattering orders with which later orders are extrapolated as a geometric series; it
-/// bounds the sum of the series.
+/// Largest ratio of successive scattering orders with which later orders are extrapolated as a geometric series; this
+/// limit bounds the sum of the series.
 constexpr double FastestSeries = 0.99;
 
 PairSums SumsOf(const OrdinatesSettings& settings)

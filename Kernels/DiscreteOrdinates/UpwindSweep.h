@@ -95,9 +95,9 @@ struct SweptFaces
 ///
 /// Light crosses each voxel along the mean chord of the direction, with exponential attenuation: stable and positive
 /// for every optical thickness, and exact along an axis. Light leaves a voxel into its downwind neighbours with equal
-/// radiance, so that power is conserved to rounding. For oblique directions light spreads across the direction: first
-/// order in the voxel edges. Weighted diamond differences (SweptSums::byDiamonds) are of second order (Eq. (D15)),
-/// equally positive and conservative, but not linear where they have to keep light from becoming negative.
+/// radiance, so that power is conserved to rounding. For oblique directions light spreads across the direction, an
+/// error of first order in the voxel edges. Weighted diamond differences (SweptSums::byDiamonds) are of second order
+/// (Eq. (D15)), equally positive and conservative, but not linear where they have to keep light from becoming negative.
 class UpwindSweep : public OrdinateSweep
 {
 public:
@@ -135,7 +135,7 @@ public:
 
 private:
   bool IsCarried(int axis) const { return !this->At.unvarying[axis]; }
-  /// For a group of directions: number of rows of a face perpendicular to `axis`, and of voxels in a row.
+  /// Number of rows of a face perpendicular to `axis`, and number of voxels in a row.
   std::array<int, 2> FaceSize(int axis) const;
   void LoadDirections();
   bool IsCounted(int face) const { return !(this->At.inner >> face & 1); }

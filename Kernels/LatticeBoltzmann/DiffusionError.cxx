@@ -86,8 +86,8 @@ void EstimateDiffusionError(Device& device, const SceneBlock& scene, const Latti
       lattice = std::move(other);
     }
   }
-  // The complete difference between the two solves is the error; an infinite order of convergence in the voxel size
-  // attributes no part of it to the voxels.
+  // The whole difference between the two solves is the error of diffusion: an infinite order of convergence attributes
+  // no part of it to the voxel size.
   WriteErrorEstimate(light, blocks, maps, lattice, 1.0, std::numeric_limits<double>::infinity());
 }
 

@@ -92,8 +92,8 @@ private:
     const std::size_t last = this->Box.Beyond(voxel, 2 * axis + 1 - ahead);
     if (last != Outside)
     {
-      // The last voxel of the box has none downstream. There k is computed from the decrease from the voxel upstream to
-      // this one, and is multiplied by the ratio of their thicknesses.
+      // The last voxel of the box has no voxel downstream. Its k is computed from the decrease from the voxel upstream
+      // to this one, and is multiplied by the ratio of their thicknesses.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
       // without light upstream no decrease is assumed

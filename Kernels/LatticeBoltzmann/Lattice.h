@@ -32,8 +32,8 @@ public:
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
   /// replaces the isotropic source on the device (LatticeVoxels::source); values are by own and ghost voxel
   void SetSource(const std::vector<float>& source);
-  /// Sets the source to scatters times fluence plus `emits`. Queued. Arrays are in the layout of LatticeInfo (rows of
-  /// voxels with a halo) unless stated otherwise.
+  /// Queues a kernel that sets the source to scatters times fluence plus `emits`. Arrays are in the layout of
+  /// LatticeInfo (rows of voxels with a halo) unless stated otherwise.
   /// @param scatters  fraction of the fluence that is scattered in a step through a voxel, times the conversion from
   ///   the unit of `fluence` to that of the lattice
   /// @param emits  source without that scattered light, W / length^2 per step

@@ -27,15 +27,15 @@ struct LatticeSettings
   /// step together.
   int blockSize = 0;
   /// Number of steps in a block between exchanges of light. If lattice and photons are interleaved, number of lattice
-  /// steps each time the photons have marched the next segments of their paths.
+  /// steps taken each time the photons have marched the next segments of their paths.
   int stepsPerExchange = 8;
   int maximumSteps = 0;    ///< number of steps; 0: step until the tolerance is met
   double tolerance = 1e-4; ///< estimated relative error of the fluence at which to stop
   /// Whether to solve directly for the steady state, if the scheme is conservative and blockSize and maximumSteps are
   /// 0; false: step until the tolerance is met.
   bool solvesSteady = true;
-  /// Number of evenly spread voxels at which the change of fluence is measured; 0: all voxels. Reading all costs about
-  /// one step.
+  /// Number of evenly spread voxels at which the change of fluence is measured; 0: all voxels. Reading all voxels costs
+  /// about as much as a step.
   int probes = 4096;
   /// Whether photons, if any are given, march interleaved with lattice steps that diffuse the light deposited so far:
   /// stepsPerExchange steps per `stretches` segments of a photon's path, from voxel wall to voxel wall (0: the whole

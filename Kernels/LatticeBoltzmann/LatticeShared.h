@@ -18,7 +18,7 @@ SHARED_BEGIN
 enum
 {
   LatticeFirst = 16, ///< index of a row's first voxel, chosen so that rows are aligned for vector loads
-  /// replaces the number (0 to 5) of a face of the grid if the voxel's neighbour is in another block
+  /// used in place of the number (0 to 5) of a face of the grid if the voxel's neighbour is in another block
   OtherBlock = 6
 };
 

@@ -83,9 +83,9 @@ enum class Balancing
   Not
 };
 
-/// Largest value over channels of powerOf(channel, incoming power), relative to the incoming power (entered plus
-/// emitted) of the channel or, if that is larger, a thousandth of that of the brightest channel. In a solve with one
-/// channel the other two are 0.
+/// Largest value, over channels, of powerOf(channel, incoming power) divided by the incoming power (entered plus
+/// emitted) of the channel or, if larger, by a thousandth of the brightest channel's incoming power. In a solve with
+/// one channel the powers of the other two are 0.
 /// @param powerOf  function of channel and incoming power in W, returns W
 template <class PowerOf>
 double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)

@@ -41,7 +41,7 @@ struct PropagationSettings
   /// (OrdinatesTransport.h), but light of faces along rays, because ordinates would smear its edges.
   bool alongRays = true;
   /// Whether rays of each direction start at a different position within a voxel (RayBundles.h). With more than 100
-  /// uncollidedDirections uncollided light always does so, unless the solve is accelerated. With at least 144
+  /// uncollidedDirections, rays of uncollided light always do, unless the solve is accelerated. With at least 144
   /// directions per face this reduces the error by up to half; with fewer it can double the error.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< number of rays per voxel edge and direction, 1 to 16

@@ -193,8 +193,8 @@ static Crossed cross_down(Link link, Behind below, exact down)
 
 // Lower end of a line, or of the piece of a line in one block. arrived: light that arrives in the first voxel from
 // below. back: fraction of the light sent down by the first voxel that returns to it. part: fraction of the light sent
-// up the cut that the link transmits, if the line is cut at this end because it is closed or comes from another block;
-// else 0.
+// up across the cut that the link transmits, if the line is cut at this end because it is closed or comes from another
+// block; else 0.
 typedef struct
 {
   exact arrived, back, part;
@@ -214,7 +214,7 @@ static Beginning begin_at_cut(Link link)
 }
 
 // A closed line is cut below its first voxel, and so is a line that comes from another block. Cut is the light that the
-// first voxel sends down to the cut, as a linear function of the light x sent up the cut and of the light B that
+// first voxel sends down to the cut, as a linear function of the light x sent up across the cut and of the light B that
 // arrives from above at the last voxel: sent + round x + gives_back B.
 typedef struct
 {
@@ -222,8 +222,8 @@ typedef struct
 } Cut;
 
 // State of the upward pass at the last voxel that it has reached: place and index of this voxel, and number of voxels
-// so far. If the line is cut below its first voxel, part is the fraction of the light sent up the cut that this voxel
-// sends up, and cut is the light that the first voxel sends down to the cut.
+// so far. If the line is cut below its first voxel, part is the fraction of the light sent up across the cut that this
+// voxel sends up, and cut is the light that the first voxel sends down to the cut.
 typedef struct
 {
   Place place;
@@ -237,7 +237,7 @@ typedef struct
 //   is_cut  true: the line is cut below its first voxel
 //   behind  [voxel][2]: U, light that the voxel sends up if none arrives from above; R, fraction of light from above
 //           that it sends back up
-//   share   [voxel], if the line is cut: T, the fraction of light sent up the cut that the voxel sends up
+//   share   [voxel], if the line is cut: T, the fraction of light sent up across the cut that the voxel sends up
 static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
   __global exact* share)
 {
@@ -288,7 +288,7 @@ static ulong density_at(LatticeInfo lattice, const int* at)
 
 // Downward pass of one line, or of the piece of a line in one block, after go_up().
 //   comes     light that arrives from above at the last voxel
-//   round     light sent up the cut, if the line is cut below its first voxel; else 0
+//   round     light sent up across the cut, if the line is cut below its first voxel; else 0
 //   first     light that arrives in the first voxel from below, and the fraction of the light it sends down that
 //             returns
 //   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
@@ -325,7 +325,7 @@ static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, ex
 
 // Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
 //   behind    [voxel][2], scratch: U and R of go_up()
-//   share     [voxel], scratch: in closed lines, the fraction of light sent up the cut that the voxel sends up
+//   share     [voxel], scratch: in closed lines, the fraction of light sent up across the cut that the voxel sends up
 //   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
 //   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
 __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __global exact* share, __global exact* sum,
@@ -450,9 +450,9 @@ static Top last_of_piece(LatticeInfo lattice, Place place, int i)
 }
 
 // Upward pass of the pieces along a pair of directions. One work-item per piece; arrays as in sweep_lines, and
-//   sent  [piece][8], s[0] to s[7], for light x sent up the cut before the piece and light B arriving from above at its
-//         last voxel (PieceOfLine): the last voxel sends up s[0] + s[2] x + s[3] B, the first voxel sends down s[1] +
-//         s[4] x + s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
+//   sent  [piece][8], s[0] to s[7], for light x sent up across the cut before the piece and light B arriving from above
+//         at its last voxel (PieceOfLine): the last voxel sends up s[0] + s[2] x + s[3] B, the first voxel sends down
+//         s[1] + s[4] x + s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
 __kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
   __global exact* behind, __global exact* share, __global exact* sent)
 {
@@ -494,8 +494,8 @@ __kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, cons
 
 // Downward pass of the pieces along a pair of directions, after pieces_up. One work-item per piece; arrays as in
 // sweep_lines, and
-//   joined     [piece][3]: light sent up the cut before the piece, light arriving from above at its last voxel, and
-//              light that the first voxel of the next piece sends down
+//   joined     [piece][3]: light sent up across the cut before the piece, light arriving from above at its last voxel,
+//              and light that the first voxel of the next piece sends down
 //   densities  if pass.writes, also the densities that the voxels before and after the piece send into it
 __kernel void pieces_down(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
   const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,

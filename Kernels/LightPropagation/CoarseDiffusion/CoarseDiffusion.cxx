@@ -14,8 +14,8 @@ namespace tyndall
 {
 namespace
 {
-/// Factor by which a diffusion solve reduces its residual. A smaller factor would not save sweeps, because a sweep
-/// reduces the error of the light by less than this.
+/// Factor by which a diffusion solve reduces its residual. A smaller factor would not save sweeps, because a sweep by
+/// itself reduces the error of the light less strongly.
 constexpr double Reduction = 0.02;
 constexpr const char* Contents = "diffusion on cells";
 

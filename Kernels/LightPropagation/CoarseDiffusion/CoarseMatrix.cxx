@@ -14,8 +14,7 @@ constexpr double Floor = 0.05; ///< minimum optical length between cell centres 
 /// Term of Marshak's boundary condition in the resistance of a face of the box, Eq. (76d).
 constexpr double Marshak = 2.0;
 
-/// One grid of a hierarchy in which each coarser grid joins two cells along each axis: edges and mean extinction of its
-/// cells.
+/// One grid of a hierarchy: edges and mean extinction of its cells. Each coarser grid joins two cells along each axis.
 struct Level
 {
   std::array<int, 3> size;

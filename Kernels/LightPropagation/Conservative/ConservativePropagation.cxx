@@ -28,8 +28,8 @@ namespace tyndall
 {
 namespace
 {
-/// Entries of LightField::leftOut for work that traits of the scene make unnecessary, except for solving one channel
-/// instead of three.
+/// Entries of LightField::leftOut for work that traits of the scene make unnecessary. The entry on solving one channel
+/// instead of three is not among them.
 std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationResult& found)
 {
   std::vector<std::string> words;

@@ -91,8 +91,8 @@ bool OrderSweeps::MayOmitEmptySlabs() const
     !this->Parts.Faces && PaysToOmitEmptySlabs(traits.filled, this->Parts.Layout.grid, settings);
 }
 
-/// Makes the sweep of the first order along the directions with incident light alone, if these are few. Not used with
-/// periodic axes, where rays of all directions carry light on to the next order.
+/// Makes the sweep of the first order along directions with incident light only, if these directions are few. Not used
+/// with periodic axes, where rays of all directions carry light on to the next order.
 void OrderSweeps::MakeLitSweep(const Deposit& deposit)
 {
   const auto isLit = [this](int direction) { return this->Parts.Lights.UsualBoundary->IsLit(direction); };

@@ -99,7 +99,7 @@ std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
   const std::size_t values = sizeof(float) * Count(solve.channels);
   if (device.IsCpu())
   {
-    // Padding at most doubles rows of more than half of ShortestRow voxels.
+    // Padding at most doubles the length of rows with more than ShortestRow / 2 voxels.
     return 2 * values * LargestPlane(solve, ShortestRow / 2) * (2 * directions + 16 * 4 * 16);
   }
   const std::size_t rays = solve.ofBlock ? PartsOf(directions, std::size_t{ 4 }) : 6 * directions;

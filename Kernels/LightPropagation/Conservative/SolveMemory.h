@@ -10,7 +10,8 @@
 namespace tyndall
 {
 /// Device memory of a solve that does not stream arrays, in bytes: an upper bound, about a quarter above the typical
-/// use. If more is free, GPUs use more, for separate arrays of all marching directions (SweepOnGpu.h). Collective.
+/// use. If more memory is free, GPUs use more, for separate arrays of all marching directions (SweepOnGpu.h).
+/// Collective.
 std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how);
 
 /// Memory budget of a solve on a device: settings.memoryBudget bytes or, if that is 0, nine tenths of the free memory.

@@ -112,9 +112,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// Raises slightly negative scattered fluence. It occurs behind voxels with sources by octant; in dark voxels after a
-/// warm start or coarse-mesh DSA, if the iteration stops before sweeps have removed the error of the predicted light;
-/// and where sources by angular moments are negative in some directions. Limits the net flux of thick voxels.
+/// Raises slightly negative scattered fluence. Negative values occur behind voxels with sources by octant; in dark
+/// voxels after a warm start or coarse-mesh DSA, if the iteration stops before sweeps have removed the error of the
+/// predicted light; and where sources by angular moments are negative in some directions. Also limits the net flux of
+/// thick voxels.
 void SourceIteration::LimitLight()
 {
   TransportParts& parts = this->Parts;

@@ -42,9 +42,9 @@ struct OrdersToCome
   }
 };
 
-/// Source iteration: each sweep transports the light scattered from the sweep before it, one scattering order, and the
-/// fluence is the sum over orders (numerics.md, section 6). Optionally accelerated by coarse-mesh DSA. Construct and
-/// run collectively.
+/// Source iteration: each sweep transports one scattering order, the light scattered in the previous sweep; the fluence
+/// is the sum over orders (numerics.md, section 6). Optionally accelerated by coarse-mesh DSA. Construct and run
+/// collectively.
 class SourceIteration : public Iteration
 {
 public:

@@ -112,8 +112,8 @@ std::array<double, 4> Leaving(const Surface& s)
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
     deep += 2.0 * Nodes[n] * Weights[n] * DiffuseExitance(s.albedo, Nodes[n]);
   }
-  // Reflected fraction of isotropic light: exact, and in diffusion with Marshak's boundary condition (numerics.md, Eq.
-  // (79)).
+  // Reflected fraction of isotropic light: its exact value, and that of diffusion with Marshak's boundary condition
+  // (numerics.md, Eq. (79)).
   double exact = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
@@ -256,7 +256,8 @@ std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const s
   return faces;
 }
 
-/// Copies values by cell of a block's faces, a fixed number per cell, to an array by cell of the box faces.
+/// Copies an array over the cells of a block's faces, with a fixed number of values per cell, to an array over the
+/// cells of the box faces.
 void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const std::array<bool, 6>& faces,
   const Grid& grid, const Grid& whole, std::vector<double>& all)
 {

@@ -23,7 +23,7 @@
 
 namespace tyndall
 {
-/// Transport of scattered light in accelerated solves, and of the boundary light that goes with it: by the rays of
+/// Transport of scattered light in accelerated solves, and of the boundary light that is swept with it: by the rays of
 /// light propagation maps unless another solver sets its own (DiscreteOrdinates/OrdinatesTransport.h).
 struct ScatteredTransport
 {
@@ -73,8 +73,8 @@ public:
 
   const Domain& TheDomain() const { return this->Problem.TheDomain(); }
   bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< whether the block has no voxels
-  /// Writes the emission of the medium, and the forward peak of light given by another solver, which delta-M treats as
-  /// unscattered, to Source. Collective; call before any other method.
+  /// Sets Source to the emission of the medium plus, for light given by another solver, the light scattered into the
+  /// forward peak, which delta-M treats as unscattered. Collective; call before any other method.
   void LoadSource();
   /// Whether the first sweep has a non-zero source on any rank; always true if settings.leaveOut is off.
   bool HasSource() const { return this->MediumShines; }

@@ -73,7 +73,7 @@ UncollidedLight::UncollidedLight(
 }
 
 /// Whether first moments are needed for the light of lamps, or for uncollided light given by another solver. They are
-/// in optically thick voxels, where the position of first collisions matters.
+/// needed in optically thick voxels, where the position of first collisions matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && (!this->Parts.Lights.Lamps.empty() || this->Parts.Lights.Given) &&

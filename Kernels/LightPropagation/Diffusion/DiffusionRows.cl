@@ -26,9 +26,9 @@ typedef struct
   int before;     // index, in an array [voxel], of the voxel behind the low face at x = 0; for other x, add x
 } face_span;
 
-// Finds all face_spans of a row. At the box's boundary there are none; perpendicular to x the first span is the face
-// that wraps around, the second all other faces. The last vector of a span writes beyond its end, so spans must be
-// processed in order. @return number of spans
+// Finds all face_spans of a row. There are none on the box's boundary. For faces perpendicular to x, the first span is
+// the face that wraps around a periodic axis, the second all other faces. The last vector of a span writes beyond its
+// end, so spans must be processed in order. @return number of spans
 inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, face_span* spans)
 {
   const int n = layout->size[0], here = voxel_at(layout, y, z);

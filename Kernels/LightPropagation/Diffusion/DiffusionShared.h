@@ -66,8 +66,8 @@ typedef struct
   MultigridLevel rows; ///< memory layout of the conductances
 } DiffusionLayout;
 
-/// Group of directions in the partial current of a sweep with a source that is constant in each voxel: s(tau) of
-/// numerics.md, Eq. (51), along one axis is the sum over nodes of
+/// Node (group of directions) in the sum for the partial current of a sweep whose source is constant in each voxel.
+/// Along one axis, s(tau) of numerics.md, Eq. (51), is the sum over nodes of
 ///   weight (tau / 2 + cosine x / (exp(x) - 1)),   x = extinction times chord.
 typedef struct
 {

@@ -245,7 +245,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
       voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
       voxel[axes.u] = u;
       voxel[axes.v] = v;
-      // A voxel at an end of the box with ghosts that is not a ghost itself lies at an end of the whole grid, too
+      // A voxel at an end of the box with ghosts that is not a ghost itself also lies at an end of the whole grid.
       return this->Block.IsOwn(voxel);
     });
   });

@@ -55,8 +55,9 @@ struct SurfacePowers
 /// through its faces, corrected by the powers that a sweep carried through these faces, Eq. (53). Its solution is the
 /// fluence of all scattering orders.
 ///
-/// Requires the path integrals and partial currents of a sweep with a known source. Alternating sweeps, whose source is
-/// computed from the last solution, and solves converge in a few iterations for any optical thickness and albedo.
+/// Requires the path integrals and partial currents of a sweep with a known source. Sweeps and solves alternate: the
+/// source of each sweep is computed from the last solution. This iteration converges in a few steps for any optical
+/// thickness and albedo.
 ///
 /// Guarantees: power is conserved exactly, since the power that leaves one voxel enters its neighbour. In thin voxels,
 /// in vacuum and next to boundaries the solution is that of the sweep; in optically thick voxels it is that of

@@ -17,7 +17,7 @@
 // FOR_VECTORS  loops over this work-item's vectors of begin <= x < end in a row
 // FOR_VOXELS   loops over this work-item's voxels of begin <= x < end in a row
 // FILL_GHOSTS  sets a row's ghosts to the values of the opposite end; within FOR_ROWS, after the last write to the row.
-//              A periodic axis continues there; at the box's end the conductance is 0
+//              On a periodic axis these are the neighbours; elsewhere they have no effect, because the conductance is 0
 // ENDS_ROW     true for exactly one iteration per row
 #define OWN_SIZE(level, axis) ((level).end[axis] - (level).first[axis])
 #define OWN_ROWS(level) (OWN_SIZE(level, 1) * OWN_SIZE(level, 2))

@@ -159,8 +159,8 @@ private:
     this->Found = Buffer<float>(device, volume.stride, "voxels that fans light");
     this->FaceLight = Buffer<float>(device, FanFaceFirst(volume.grid, 6) * volume.channels, "light that leaves");
     this->CellsFound = Buffer<float>(device, FanFaceFirst(volume.grid, 6), "cells that fans light");
-    // Fans are used if the grid is so large that each voxel would start with the fewest rays: as many rays cost less if
-    // voxels share them.
+    // Fans are used if the grid is so large that each voxel would start with the fewest rays: the same number of rays
+    // costs less if voxels share them.
     const bool fans = this->Scene.fewest == FewestRays;
     this->Found.Fill(fans ? 1.0f : 0.0f);
     this->CellsFound.Fill(fans ? 1.0f : 0.0f);

@@ -55,8 +55,8 @@ struct StackSolution
 /// Irradiance of a beam, perpendicular to it, where it enters each layer, W / length^2.
 std::vector<double> BeamAtLayers(const LayerStack& stack, const StackBeam& beam);
 
-/// Solves the light of all layers by the adding method, from the bottom up (van de Hulst 1980; numerics.md, Eqs. (P7),
-/// (P8)).
+/// Solves for the light of all layers by the adding method, from the bottom up (van de Hulst 1980; numerics.md, Eqs.
+/// (P7), (P8)).
 /// @param order  order m of the Fourier series in azimuth; orders above 0 have no sources except beams
 StackSolution Solve(const LayerStack& stack, const StackLight& light, const HalfRangeQuadrature& nodes, int order);
 }

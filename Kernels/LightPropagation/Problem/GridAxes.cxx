@@ -15,8 +15,8 @@ namespace
 /// flat voxels slow down the diffusion solve.
 constexpr double Width = 10.0;
 constexpr int EdgeInSlabs = 12;
-/// Even number of directions along a cube face's edge whose quadrature has directions of cosine 0 to an axis; their
-/// light would wrap around forever.
+/// Even number of directions along a cube face's edge with which the quadrature nevertheless has directions normal to
+/// an axis; their light would wrap around forever.
 constexpr int EdgeWithCosineZero = 10;
 }
 

@@ -15,8 +15,8 @@ namespace tyndall
 class AxisPermutation
 {
 public:
-  /// Finds the permutation: only for slabs with layers along y or z (UnvaryingAxes) without an environment, whose
-  /// pixels have a fixed up direction. Otherwise the object converts to false.
+  /// Finds the permutation. There is one only for slabs with layers along y or z (UnvaryingAxes), and only without an
+  /// environment, because its pixels have a fixed up direction. Otherwise the object converts to false.
   AxisPermutation(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   explicit operator bool() const { return this->Along != 0; }

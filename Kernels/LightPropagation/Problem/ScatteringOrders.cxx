@@ -172,7 +172,7 @@ double LeakAlong(double longest, double extrapolations)
 }
 
 /// Sum of the extrapolation distances at both faces normal to an axis, mean free paths. A reflecting face acts as if
-/// the medium continued there, at most as a mirror image of the medium.
+/// the medium continued beyond it, at most as its mirror image.
 double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {

@@ -7,9 +7,9 @@
 
 namespace tyndall
 {
-/// Estimated number of scattering orders (source iterations) until about 1e-4 of the light remains, from the decay rate
-/// of diffusion in a slab with extrapolated boundaries (numerics.md, Eq. (86)) as thick as the thick lines of voxels.
-/// Collective, as are all functions in this header that take a problem.
+/// Estimated number of scattering orders (source iterations) until about 1e-4 of the light remains. It follows from the
+/// decay rate of diffusion in a slab as thick as the thick lines of voxels, with extrapolated boundaries (numerics.md,
+/// Eq. (86)). Collective, as are all functions in this header that take a problem.
 double OrdersNeeded(const PropagationProblem& problem);
 
 /// Whether source iteration is predicted to take longer than an accelerated solve. Costs of set-up, sweeps and

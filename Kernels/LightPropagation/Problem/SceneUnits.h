@@ -7,10 +7,10 @@
 
 namespace tyndall
 {
-/// Units of power and length chosen by the solver (numerics.md, Eq. (85)). Light is linear in its power, but floats
-/// overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional, up to a power
-/// of two, to the power of the sources, so that a scene with scaled power has the same rounding errors and takes the
-/// same steps of the solver.
+/// Units of power and length chosen by the solver (numerics.md, Eq. (85)). Light is linear in the power of its sources,
+/// but floats overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional, up
+/// to a power of two, to the power of the sources, so that a scene with scaled power has the same rounding errors and
+/// takes the same steps of the solver.
 
 /// Quantities from which the unit of power is computed. Over several ranks it is computed from the maximum of each,
 /// since only emission and given uncollided light differ between ranks.

@@ -7,8 +7,8 @@
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Loads the values of a group of MomentGroup (16) voxels along x, of which the row still has `voxels`; 0 beyond the
-// row's end.
+// Loads the values of a group of MomentGroup (16) voxels along x, of which `voxels` lie in the row; 0 beyond the row's
+// end.
 static float16 load_group(const __global float* values, int voxels)
 {
   if (voxels >= MomentGroup)

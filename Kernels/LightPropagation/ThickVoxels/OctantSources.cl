@@ -143,8 +143,8 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 //   of_lamps  source by face (e of numerics.md, Eq. (46e)) of light first scattered from lamps, W / (length^3 sr),
 //             used if `lamps` is 1; set to 0
 //   sources   W / (length^3 sr), [octant][voxel] from index 8 `first` on, in addition to the uniform source: on entry
-//             the sources of the sweep, which are replaced. May be negative in the first scattering orders, for light
-//             that leaves the voxel only in later orders
+//             the sources of the sweep, which are replaced. May be negative in the first scattering orders, because
+//             some light leaves the voxel only in later ones
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   const __global float* source, const __global float* values, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)
@@ -201,8 +201,8 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
     const __global float* nearest = falling + (int)place * ResponseValues;
     const layer_response slow = response_of(nearest, s / t, tau);
     const layer_response fast = response_of(nearest + ResponseValues, s / t, tau);
-    // Factor that reduces the sources to 0 for light that hardly decays across the voxel: its first-collision source is
-    // uniform.
+    // Factor that reduces the sources to 0 for light that hardly decays across the voxel, because the first-collision
+    // source of such light is uniform.
     const float falls = fmin(fall * exp2((float)-FirstProfile), 1.0f);
     const float differs = falls * mix(slow.differs, fast.differs, v);
     const float alike = falls * mix(slow.alike, fast.alike, v);
