@@ -164,9 +164,9 @@ static inline void keep_sums(__global float* block, int voxel, real mean, real a
   }
 }
 
-// Sweeps a range of layers along z of all voxels, of a box, or of the voxels downwind of a box. One work-item per group
-// of directions, or per direction. In a sweep downwind of a box, x, y and z hold on entry the radiance that left the
-// box, and the light of voxels in the box is set to 0.
+// Sweeps a range of layers along z: of all voxels, of a box, or of the voxels downwind of a box. One work-item per
+// group of directions, or per direction. In a sweep downwind of a box, x, y and z hold on entry the radiance that left
+// the box, and the light of voxels in the box is set to 0.
 //   light     source, W / (length^3 sr); with ByDirection by direction, replaced by the mean radiance
 //   scale     factor by voxel for the sources of all directions; not used with InSums
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
@@ -398,8 +398,8 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
-// Adds the reflected radiance of the cells of the two faces perpendicular to an axis to the incident radiance along
-// every incident direction.
+// Adds reflected radiance to the incident radiance along every incident direction, in each cell of the two faces
+// perpendicular to an axis.
 //   face  incident radiance, W / (length^2 sr), [group][cell][8]
 //   in    reflected radiance, W / (length^2 sr), by cell of the box faces; the cells of the two faces begin at `low`
 //         and `high`

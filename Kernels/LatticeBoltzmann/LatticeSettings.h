@@ -23,8 +23,8 @@ struct LatticeSettings
   /// Number of neighbours with which a voxel exchanges light: 18 (Geist et al. 2004), or 6 along the axes.
   int directions = 18;
   LatticeScheme scheme = LatticeScheme::Conservative;
-  /// Edge, 2 to 8 voxels, of blocks that take several steps between exchanges of light, as published; 0: all voxels
-  /// step together.
+  /// Edge, in voxels (2 to 8), of the blocks of the published method, which take several steps between exchanges of
+  /// light; 0: all voxels step together.
   int blockSize = 0;
   /// Number of steps in a block between exchanges of light. If lattice and photons are interleaved, number of lattice
   /// steps taken each time the photons have marched the next segments of their paths.

@@ -37,7 +37,7 @@ typedef struct
   int steps;         ///< number of steps in a block between exchanges of light
 } LatticeInfo;
 
-/// Parameters of a sweep along the lines of links (rows of voxels along a link vector) of a pair of opposite directions
+/// Parameters of a sweep along the lines of links (rows of voxels along a link vector) for two opposite directions
 /// (LatticeLines.cl).
 typedef struct
 {

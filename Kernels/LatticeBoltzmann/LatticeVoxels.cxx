@@ -38,8 +38,8 @@ double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
   return medium.grid.spacing[0] * std::sqrt(3.0 * absorbs * medium.TransportSigmaT(voxel, channel));
 }
 
-/// Closed lines of links of a pair of directions in the whole grid: lines that wrap around periodic axes and return to
-/// their first voxel.
+/// Lines of links, along a pair of directions in the whole grid, that are closed: they wrap around periodic axes and
+/// return to their first voxel.
 class ClosedLines
 {
 public:

@@ -66,7 +66,8 @@ private:
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
 /// Like GoesOnToItsEnd(), W, for orders that are accelerated: the acceleration's prediction already includes the light
-/// that wraps around periodic axes, so its power is added to `others` only if it does not decrease from order to order.
+/// that wraps around periodic axes, so the power of this light is added to `others` only if it does not decrease from
+/// order to order.
 /// @param others  power of the last order that the acceleration did not predict, W
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 

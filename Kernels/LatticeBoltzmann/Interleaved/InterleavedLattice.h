@@ -43,7 +43,7 @@ struct PhotonChannelMap
   PhotonChannelMap() = default;
   /// @param photons  uncollided light that the problem was made with
   /// @param solved  `photons` in the problem's units
-  /// @param channels, channel  number of channels of the problem, and the index of one
+  /// @param channels, channel  number of channels of the problem, and index of the channel
   PhotonChannelMap(const PhotonsToCome& photons, const UncollidedImage& solved, int channels, int channel);
 
   int from = 0;         ///< channel of the photons' light

@@ -113,8 +113,8 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// Finds, for a pair of opposite directions, the lines that begin in this rank's block, whose pieces (one segment per
-/// block) this rank joins, and the pieces that it exchanges with other ranks.
+/// For a pair of opposite directions, finds the lines that begin in this rank's block, because this rank joins their
+/// pieces (one segment per block). Also finds the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   const int self = this->TheDomain.Rank();

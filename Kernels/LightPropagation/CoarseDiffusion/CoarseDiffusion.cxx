@@ -206,8 +206,7 @@ void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, doubl
 
 /// Computes the source scattered from the path integrals, times `sign`.
 /// @param adds  whether to add to `source` rather than replace it
-/// @return sums over rows and ranks: of the source, of its absolute value, and, by face of the box, of the correction
-///   of scattered power there
+/// @return sums over rows and ranks of the source, of its absolute value, and of the correction at each face of the box
 CoarseDiffusion::Sums CoarseDiffusion::Scatter(
   const Channel& channel, const Buffer<float>& source, double sign, bool adds) const
 {

@@ -11,7 +11,7 @@ namespace tyndall
 namespace
 {
 constexpr double Floor = 0.05; ///< minimum optical length between cell centres in conductances
-/// Term of Marshak's boundary condition in the resistance of a face of the box, Eq. (76d).
+/// Term by which Marshak's boundary condition enters the resistance of a face of the box, Eq. (76d).
 constexpr double Marshak = 2.0;
 
 /// One grid of a hierarchy: edges and mean extinction of its cells. Each coarser grid joins two cells along each axis.

@@ -37,7 +37,7 @@ public:
   std::size_t Cells() const { return this->FaceOfCell.size(); }
   int Channels() const { return this->ChannelCount; }
   int FaceOf(std::size_t cell) const { return this->FaceOfCell[cell]; }
-  /// Albedo of the face and channel of element i of an array [channel][cell].
+  /// Albedo that applies to element i of an array [channel][cell].
   double AlbedoOf(std::size_t i) const
   {
     return this->AlbedoOfFaces[this->FaceOf(i % this->Cells())][i / this->Cells()];

@@ -85,7 +85,7 @@ public:
   /// Boundary source of sweeps along the directions of scattered light; empty: none.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepCarriesBoundarySource() const { return this->UsualBoundary->Shines(); }
-  /// The boundary source of FineBoundary, represented in the quadrature of scattered light instead of the finer one.
+  /// FineBoundary, represented in the quadrature of scattered light instead of the finer one.
   BoundaryLight FinePartAlongUsual() const;
   /// Lamps of a scene, and parallel beams that represent the peaks of its environment, in the units of `illumination`.
   std::vector<Light> LampsOf(const Illumination& illumination) const;

@@ -19,8 +19,8 @@ public:
   ///   moments) with one value per voxel
   AndersonMixing(Device& device, std::size_t voxels, std::size_t count, const char* what);
 
-  /// Parameters of the weight of a voxel in the norm of the change (numerics.md, Eq. (72)): tau / (1 + tau), with tau =
-  /// sigma_s length; 0 without scattering.
+  /// Parameters of a voxel's weight in the norm of the change (numerics.md, Eq. (72)). The weight is tau / (1 + tau),
+  /// with tau = sigma_s length; 0 without scattering.
   struct Weighting
   {
     /// Scattering coefficient, 1/length; below 0 in ghost voxels, which are excluded from sums because the ranks that

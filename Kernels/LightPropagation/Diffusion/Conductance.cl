@@ -116,8 +116,8 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
 //             voxels are thick
 inline real pattern_of(real crossing, real tau)
 {
-  // In thin voxels the factor is 1: there diffusion starts from the sweep's fluence, which already varies from plane to
-  // plane like the power of the rays that cross the faces.
+  // In thin voxels the factor is 1, because diffusion starts from the sweep's fluence in them, which already varies
+  // from plane to plane like the power of the rays that cross the faces.
   const real thick = 1.0f - 1.0f / (1.0f + tau * tau);
   return 1.0f + thick * (crossing - 1.0f);
 }

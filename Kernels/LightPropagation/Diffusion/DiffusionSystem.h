@@ -153,7 +153,8 @@ public:
     /// boundary, and number of these cells.
     double transportWeight = 0.0, shared = 0.0;
   };
-  /// @param counts  whether to include a cell, given by its face and its indices along the other two axes in order
+  /// @param counts  whether to include a cell, given by its face and its indices along the other two axes, the lower
+  ///   axis first
   BorderSums SumBorders(const std::function<bool(int face, int u, int v)>& counts);
   /// Absorbed power of the solution in the voxels that this rank owns, W.
   double Absorbed() const;

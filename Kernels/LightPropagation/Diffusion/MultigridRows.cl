@@ -131,8 +131,8 @@ inline real apply_row(const matrix_row* row, int x)
   return sum + aside;
 }
 
-// Sums of pairs of neighbouring SIMD lanes of two adjacent vectors a, b. first_of_pairs() returns the first lane of
-// each pair instead.
+// Adds neighbouring SIMD lanes of two adjacent vectors a, b in pairs. first_of_pairs() returns the first lane of each
+// pair instead.
 inline real pair_sums(real a, real b)
 {
 #if REAL_WIDTH == 1

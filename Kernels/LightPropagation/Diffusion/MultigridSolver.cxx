@@ -25,8 +25,8 @@ constexpr float Damping = 0.87f;
 /// Number of coarse levels, counted from the second level, that are visited twice per cycle; more do not save
 /// iterations.
 constexpr std::size_t VisitedTwice = 2;
-/// Factor of the correction of each of two visits of a level. With this factor the preconditioner is positive definite
-/// if one visit returns less than 2.5 times the exact correction; it returns too much where voxels of unequal
+/// If a level is visited twice, each correction is multiplied by this factor. With it, the preconditioner is positive
+/// definite if one visit returns less than 2.5 times the exact correction; it returns too much where voxels of unequal
 /// coefficients are joined.
 constexpr float PartOfVisit = 0.8f;
 

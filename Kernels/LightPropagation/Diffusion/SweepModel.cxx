@@ -20,8 +20,8 @@ double FaceArea(const Grid& grid, int axis)
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
 }
 
-/// Power per area that crosses voxel faces perpendicular to `axis` towards increasing index, for radiance 1, by the
-/// rays that march along the axis `marching`: one value for each plane of voxels perpendicular to `marching`.
+/// Power per area that the rays that march along the axis `marching` carry, at radiance 1, through voxel faces
+/// perpendicular to `axis` towards increasing index: one value for each plane of voxels perpendicular to `marching`.
 std::vector<double> CrossingsIn(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {

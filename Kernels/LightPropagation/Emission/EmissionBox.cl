@@ -23,7 +23,7 @@ typedef struct
   float spacing[3];
   int sourceFirst[3], sourceSize[3];
   int strides[3], base; // strides of the array sigma_t by axis, and index of voxel (0, 0, 0) in it
-  // Strides of the array of emission by axis, and index of the box's lowest voxel in it.
+  // Strides along the axes in the array of emission, and index of the box's lowest voxel in that array.
   int sourceStrides[3], sourceBase;
   int last, sourceLast; // highest index of sigma_t and of emission
   int axis[3];          // the original axis that corresponds to each permuted axis

@@ -123,7 +123,7 @@ typedef struct
   float sample;          // distance from the origin at which light is sampled, layers
 } fan_lines;
 
-// Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. Requires that no ray
+// Advances the rays within one row of voxels, from `from` to `to` (layers from the origin). Requires that no ray
 // crosses more than one plane of voxel faces.
 static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
   float to, fan_lines* lines)
@@ -149,8 +149,8 @@ static void cross_row(const turned_scene* s, const FanInfo* fan, const __global 
   lines->tau += first + second;
 }
 
-// Advances the rays from `from` to `to`, in layers from the origin, within one layer of voxels, in steps in which no
-// ray crosses more than one plane of voxel faces across either the second or the third axis.
+// Advances the rays within one layer of voxels, from `from` to `to` (layers from the origin). In each step no ray
+// crosses more than one plane of voxel faces across the second axis, and no more than one across the third.
 static void cross_layer(const turned_scene* s, const EmissionInfo* info, const FanInfo* fan,
   const __global float* of_layer, int steps, float from, float to, fan_lines* lines)
 {
@@ -248,7 +248,8 @@ static integer lines_up_to(real place, float per_voxel, float before, int count)
   return clamp(to_integer(ceil(place * per_voxel - before)), (integer)0, (integer)count);
 }
 
-// Adds the light of one ray per SIMD lane, all of one row of a fan, to the sums of adjacent voxels, one per lane.
+// Adds the light of rays to the sums of adjacent voxels: each SIMD lane has one ray and one voxel. The rays belong to
+// one row of a fan.
 //   got        light of the ray, divided by the number of rays over which its voxel averages
 //   aside, up  tangents of the ray and of the row, times the voxel's edge
 //   sums       [fluence, net flux along the permuted axes]
@@ -265,8 +266,8 @@ static void add_lines(const turned_scene* s, real got, real aside, float up, rea
   sums[3] += part * up;
 }
 
-// Adds to `sums`, for adjacent voxels or cells of the face at the end of the layers, the mean light of the rays of fan
-// p that cross each of them (numerics.md, Eqs. (40a), (40b)).
+// For adjacent voxels, or adjacent cells of the face at the end of the layers: adds the mean light of the rays of fan p
+// that cross each of them to `sums` (numerics.md, Eqs. (40a), (40b)).
 //   layer       layer of voxels, from 0; fan->layers: the face
 //   at, row_at  positions of the voxels along the second and the third axis
 static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,

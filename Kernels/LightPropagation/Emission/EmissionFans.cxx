@@ -15,8 +15,8 @@ namespace
 /// fans are compared with the other half; each half consists of two pairs (FindPoints()).
 constexpr int FewestPoints = 8;
 constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
-/// The number of fans n is doubled while the light of the two halves of the fans differs in more than this fraction,
-/// times n, of all voxels. In the voxels where they still differ at the end, rays are traced for each voxel
+/// The number of fans n is doubled while the light of the two halves of the fans differs in more than a fraction
+/// FewLeft n of all voxels. In the voxels in which it still differs at the end, rays are traced for each voxel
 /// individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
@@ -99,8 +99,8 @@ public:
 
   std::array<int, 3> First, Size;
 
-  /// The point at given quantiles of the emission, voxels: along the first axis over the complete box, then along each
-  /// other axis within the layer and row already chosen.
+  /// The point of the box, voxels, at given quantiles of the emission. The first quantile chooses a layer across the
+  /// first axis, the second one a row of that layer, the third one a point of that row.
   /// @param parts  quantiles, 0 to 1
   /// @param swapped  the third axis comes before the second
   std::array<float, 3> PointAt(const std::array<double, 3>& parts, bool swapped) const

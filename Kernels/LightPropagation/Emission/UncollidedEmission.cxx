@@ -79,8 +79,8 @@ std::vector<float> WholeExtinction(const UncollidedVolume& volume, const VolumeL
   return all;
 }
 
-/// Adds the values of this rank's voxels in an array over the whole domain to an array over its block. Each channel and
-/// voxel has `parts` values.
+/// Adds the elements of an array over the whole domain that belong to this rank's voxels to an array over this rank's
+/// block. Each channel and voxel has `parts` values.
 void AddOwn(const UncollidedVolume& volume, const VolumeLayout& whole, int parts, const Buffer<float>& from,
   const Buffer<float>& to)
 {

@@ -72,8 +72,8 @@ struct LayerSource
   explicit LayerSource(Eigen::Index nodes);
 
   /// Adds the light of emission that is uniform in depth.
-  /// @param emitted  emission times height of the layer, equal up and down, times the square root of the weight of each
-  ///   of the quadrature's nodes
+  /// @param emitted  by node of the quadrature: emission times height of the layer, equal up and down, times the square
+  ///   root of the node's weight
   void AddEmission(const LayerModes& modes, const LayerOperator& layer, double depth, const Eigen::VectorXd& emitted);
 
   /// Adds the light of the first-collision source of a beam, per mean free path.

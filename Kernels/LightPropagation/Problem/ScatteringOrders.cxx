@@ -52,13 +52,13 @@ constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
 /// Times of coarse-mesh DSA (a diffusion correction on cells of several voxels). The number of iterations is 0 here and
 /// set by TimeInCells().
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
-/// Factor, relative to the albedo, by which an iteration of coarse-mesh DSA reduces the error: 5 iterations at albedo
-/// 0.5, 7 at 0.9 to 1.
+/// An iteration of coarse-mesh DSA reduces the error by this factor times the albedo: 5 iterations at albedo 0.5, 7 at
+/// 0.9 to 1.
 constexpr double CellFall = 0.3;
 /// Maximum optical thickness of a cell of coarse-mesh DSA where the extinction is largest
 constexpr double CellAtMost = 1.0;
 constexpr int MostHalvings = 3;
-/// Time of set-up of source iteration, relative to that of one order: measured 0.8 in 100^3 voxels, 2 in 40^3.
+/// Set-up time of source iteration, relative to the time of one order: measured 0.8 in 100^3 voxels, 2 in 40^3.
 constexpr double PlainSetUp = 0.8;
 
 /// Sums of a quantity over the lines of voxels along each axis: [axis][position on the other two axes, the lower one
@@ -183,7 +183,7 @@ double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel,
   return std::min(low, longest + high) + std::min(high, longest + low);
 }
 
-/// Optical thickness of the lines of voxels of the domain. Collective.
+/// Optical thickness of the domain's lines of voxels. Collective.
 /// @param value  value(voxel): extinction of this rank's voxels, 1/length
 template <class Value>
 ThickLines LinesOf(const Domain& domain, const Value& value)

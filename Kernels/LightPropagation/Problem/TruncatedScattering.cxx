@@ -13,7 +13,7 @@ namespace
 /// Number of directions per cube face that are tested as incident directions, in addition to those of the quadrature.
 constexpr int FromPerFace = 144;
 
-/// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
+/// Whether `omega` lies in a fixed one of the 48 parts of the sphere that are images of each other under rotations and
 /// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
 bool IsInOnePart(const std::array<double, 3>& omega)
 {

@@ -50,8 +50,8 @@ public:
   TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
   int Degree() const { return this->MostDegree; } ///< highest degree of the angular moments of any voxel
-  /// Sets the highest degree of any voxel to that of the domain, if the medium is a subdomain: at least that of the
-  /// subdomain, at most that given to the constructor.
+  /// If the medium is a subdomain: sets the highest degree of any voxel to that of the domain, which lies between the
+  /// degree of the subdomain and the degree given to the constructor.
   void RaiseDegree(int degree) { this->MostDegree = degree; }
   /// Descriptions, for LightField::leftOut, of simplifications of the medium's scattering; empty if there are none.
   std::vector<std::string> LeftOut() const;

@@ -74,8 +74,7 @@ public:
   /// Runs `step` on the moments of the path integrals with ghost cells, and copies those of degree 1 back to
   /// TransportParts::Path.
   void ChangePath(const std::function<void(const Buffer<float>& path)>& step);
-  /// Runs `step`, which changes the source of the next sweep with ghost cells, and copies that source back to the
-  /// block.
+  /// Runs `step`, which changes the next source in the array with ghost cells, and copies it back to the block.
   void ChangeSource(const std::function<void()>& step);
   /// Copies the source of the next sweep to its array with ghost cells.
   void TakeSource() { this->SourceWithGhosts.FillOwn(); }
