@@ -69,14 +69,14 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 
 /// Sets directions, tolerance and, if scattering is anisotropic, terms of the phase function for a quality level. Only
 /// settings that have their default values are changed. The number of directions is limited so that the radiance of one
-/// channel on the whole grid takes at most half of the smallest memory of any rank. Collective.
+/// channel on the whole grid takes at most half of the smallest device memory of any rank. Collective.
 /// @param medium  of this rank's block
 /// @param memory  of this rank's device
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
 
 /// Largest number of directions per cube face with which the radiance of one channel on the whole grid takes at most
-/// half of the smallest memory of any rank. A square number, at least 9 and at most `most`. Collective.
+/// half of the smallest device memory of any rank. A square number, at least 9 and at most `most`. Collective.
 /// @param memory  of this rank's device
 int DirectionsThatFit(const Domain& domain, int most, const DeviceMemory& memory);
 

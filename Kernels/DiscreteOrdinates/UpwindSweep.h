@@ -48,7 +48,7 @@ struct OrdinateArrays
   /// Whether only light that wraps around periodic axes is incident, and no reflected light.
   bool onlyWraps = false;
   /// Whether each block of OrdinateBlock consecutive voxels has neither medium nor source: its source is then not read,
-  /// and `radiance` receives sums over directions alone, for AngularScattering. Null: no such block
+  /// and `radiance` receives only sums over directions, for AngularScattering. Null: no such block
   const Buffer<cl_uchar>* empty = nullptr;
   bool netFlux = false; ///< whether these sums include the net flux
 };
@@ -111,9 +111,9 @@ public:
   /// Fraction of the groups of directions that carry incident light.
   double LitPart(const IncomingRadiance& incoming) const;
 
-  /// Sweeps the box alone, for an order without incident light and without sources outside of the box. The radiance
-  /// that leaves the box is added to that of earlier such orders, for ApplyBeyond(). There must be no periodic axis and
-  /// no reflecting face.
+  /// Sweeps only the box, for an order without incident light and without sources outside of the box. The radiance that
+  /// leaves the box is added to that of earlier such orders, for ApplyBeyond(). There must be no periodic axis and no
+  /// reflecting face.
   /// @return power that leaves the box, through its own faces
   FacePowers ApplyWithin(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor);
   /// Carries the radiance that left the box in all calls of ApplyWithin() on to the faces of the grid.

@@ -41,7 +41,7 @@ typedef struct
 /// (LatticeLines.cl).
 typedef struct
 {
-  /// layout of the lattice, and the light incident at its faces, which is 0 in sweeps that carry collided light alone
+  /// layout of the lattice, and the light incident at its faces, which is 0 in sweeps that carry only collided light
   LatticeInfo lattice;
   int pair;   ///< directions 2 pair and 2 pair + 1
   int writes; ///< 1: the sweep also writes densities, in the layout of `lattice`

@@ -38,7 +38,7 @@ public:
   Values Sweep(const Values& even, bool withIncident, bool writes, const Monitor& monitor);
 
 private:
-  /// Pieces (segments of lines in one block) whose values this rank exchanges with another rank, by number in their
+  /// Pieces (segments of lines in one block) whose values this rank exchanges with another rank: their numbers in the
   /// block, in an order that both ranks know.
   struct Shared
   {

@@ -77,8 +77,8 @@ void PiecesOfLines::ForPieces(int rank, const Visit& visit) const
 }
 
 /// Linear response of a piece of a line of links to light at its ends (numerics.md, Eq. (L15)): x is sent up by the
-/// voxel before the first voxel of the piece, B arrives from above at the last voxel. The response depends on the
-/// medium alone.
+/// voxel before the first voxel of the piece, B arrives from above at the last voxel. The response depends only on the
+/// medium.
 struct PieceOfLine
 {
   double passes = 0.0;    ///< fraction of the light x from below that the last voxel sends up

@@ -235,7 +235,7 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
 //   found    solution, W / length^2, by cell
 //   path     path integrals, W length; replaced
 //   fluence  W / length^2; the light is added to it
-//   tally    [row] absorbed power of all light that is added, and of the solution alone
+//   tally    [row] power absorbed from all light that is added, and from the solution only
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)

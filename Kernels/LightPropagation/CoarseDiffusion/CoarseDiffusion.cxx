@@ -218,7 +218,7 @@ CoarseDiffusion::Sums CoarseDiffusion::Scatter(
 
 /// Adds the path integrals of the last sweep and of all later orders to the fluence, and sets the path integrals to
 /// minus those of all later orders.
-/// @return sums over rows and ranks: absorbed power, and that absorbed from the later orders alone
+/// @return sums over rows and ranks: power absorbed from all light that is added, and from the later orders only
 CoarseDiffusion::Sums CoarseDiffusion::AddLaterOrders(
   const Channel& channel, const Buffer<float>* guess, const Buffer<float>& fluence) const
 {

@@ -91,8 +91,8 @@ public:
   /// clears Out().
   /// @return reflected power by face, W
   std::array<Rgb, 6> Reflect();
-  /// Sum over cells of the absolute reflected power of the last Reflect(), W by channel. The power of a cell may be
-  /// negative after a warm start.
+  /// Sum over cells of the absolute value of the power that the last Reflect() reflected, W by channel. The power of a
+  /// cell may be negative after a warm start.
   const Rgb& Magnitude() const { return this->LastMagnitude; }
   /// Returns the power in Out(), W, [channel][cell], and clears it.
   std::vector<float> TakeOut();

@@ -80,7 +80,8 @@ Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& s
 }
 
 /// Rays of the finer quadrature.
-/// @param accelerated  whether the solve uses DSA: finer directions are then swept in addition to the usual ones
+/// @param accelerated  whether the solve uses DSA: the finer directions are then swept in addition to those of
+///   scattered light
 std::unique_ptr<const SweptDirections> FinerDirections(
   const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated, const SweptDirections& usual)
 {
@@ -94,7 +95,8 @@ std::unique_ptr<const SweptDirections> FinerDirections(
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  // Whether finer directions are swept in addition to the usual ones; false: instead of them.
+  // Whether boundary light is swept along finer directions in addition to those of scattered light; false: instead of
+  // them.
   const bool besideUsual = how == IterationScheme::Dsa;
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();

@@ -43,8 +43,9 @@ UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
 /// Light sources of a problem, sorted by how their light is transported: traced along exact rays until its first
-/// collision, swept along a finer quadrature until its first collision, or swept along the usual quadrature together
-/// with scattered light. Boundary sources are those of the whole domain, emission is that of this rank's block.
+/// collision, swept along a finer quadrature until its first collision, or swept along the quadrature of scattered
+/// light together with that light. Boundary sources are those of the whole domain, emission is that of this rank's
+/// block.
 class LightSources
 {
 public:
@@ -78,7 +79,7 @@ public:
   /// Emission of the medium: localised emission, which is traced along exact rays, and the rest.
   SplitEmission Emission;
   /// Quadrature for the emission of empty voxels, until its first collision; null: no empty voxel emits, or that
-  /// emission is swept along the usual quadrature.
+  /// emission is swept along the quadrature of scattered light.
   std::unique_ptr<const SweptDirections> OfVacuum;
   std::unique_ptr<const GivenLight> Given; ///< uncollided light from another solver; null: none
 

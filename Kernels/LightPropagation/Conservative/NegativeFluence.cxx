@@ -99,7 +99,7 @@ private:
     }
   }
 
-  /// Sum of `values`, an array over the block with its halo, over the up to six neighbours of a voxel.
+  /// Sum of `values`, an array over the block with its halo, over the (at most six) neighbours of a voxel.
   /// @param known  index of the voxel in that array
   /// @param at  indices of the voxel along the axes of the block with its halo
   double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const

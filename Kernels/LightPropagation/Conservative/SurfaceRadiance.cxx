@@ -10,11 +10,12 @@ namespace tyndall
 {
 namespace
 {
-/// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light (Eq. (79)).
+/// Error of the power that diffusion predicts through a cell, relative to sqrt(1 - albedo) times the incident light
+/// (Eq. (79)).
 constexpr double Uncertainty = 0.1;
-/// Error of the diffusion power through a cell that lamps light unevenly, relative to |1 - b| times the lamp light that
-/// the cell reflects (Eq. (79)). b is the lamp light deposited in the cell's voxel, divided by the deposit expected
-/// from the irradiance.
+/// Error of the power that diffusion predicts through a cell that lamps light unevenly, relative to |1 - b| times the
+/// lamp light that the cell reflects (Eq. (79)). b is the lamp light deposited in the cell's voxel, divided by the
+/// deposit expected from the irradiance.
 constexpr double UncertainPart = 0.5;
 /// Largest ratio of lamp light deposited in a voxel to that expected from the irradiance.
 constexpr double MostUneven = 4.0;

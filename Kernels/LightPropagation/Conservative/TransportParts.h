@@ -95,8 +95,9 @@ public:
   };
   UncollidedPath FindUncollidedPath(const UncollidedSource& source, const Monitor& monitor);
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
-  /// Uncollided light of a uniform sky of radiance 1 along the finer quadrature and along the usual one. By reciprocity
-  /// its path integral is also the power that escapes uncollided from a source of 1 in a voxel (numerics.md, Eq. (45)).
+  /// Uncollided light of a uniform sky of radiance 1 along the finer quadrature, and along that of scattered light. By
+  /// reciprocity its path integral is also the power that escapes uncollided from a source of 1 in a voxel
+  /// (numerics.md, Eq. (45)).
   struct EvenSky
   {
     UncollidedPath fine, usual;

@@ -240,11 +240,11 @@ double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
   return this->LinearSource ? 1.0 / (1.0 + tau * (TRANSPORT_FALL(tau) + 3.0 * absorbing)) : 1.0;
 }
 
-/// Adds the uncollided boundary light along the finer quadrature minus that along the usual one (numerics.md, Eq.
-/// (76)). The sweeps of DSA carry all boundary light along the usual quadrature, because the diffusion system needs it.
-/// In media with many scatterings, and for automatically chosen directions, the light along the finer quadrature is
-/// scaled by voxel, so that the light of a uniform sky stays uniform; otherwise it is scaled by the incident power. The
-/// power that this adds to voxels is subtracted from the escaped power.
+/// Adds the uncollided boundary light along the finer quadrature minus that along the quadrature of scattered light
+/// (numerics.md, Eq. (76)). The sweeps of DSA carry all boundary light along the latter, because the diffusion system
+/// needs it. In media with many scatterings, and for automatically chosen directions, the light along the finer
+/// quadrature is scaled by voxel, so that the light of a uniform sky stays uniform; otherwise it is scaled by the
+/// incident power. The power that the difference adds to voxels is subtracted from the escaped power.
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;

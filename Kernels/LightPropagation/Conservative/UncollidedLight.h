@@ -22,8 +22,8 @@ struct GhostedMedium
   const Buffer<float>& Swept() const { return this->hasMoments ? this->swept.Values() : this->sigma_t.Values(); }
 };
 
-/// Uncollided light of a DSA solve that its sweeps do not carry: light of lamps, of localised emission, and the
-/// difference between the finer and the usual quadrature for boundary light (numerics.md, sections 5 and 7.10).
+/// Uncollided light of a DSA solve that its sweeps do not carry: light of lamps, light of localised emission, and the
+/// change of boundary light by a finer quadrature than that of scattered light (numerics.md, sections 5 and 7.10).
 /// Computed once, in the constructor. Collective.
 class UncollidedLight
 {
@@ -70,7 +70,7 @@ private:
   /// path integrals and first moments of collisions of one lamp's light, W length
   Buffer<float> PathOfLamp, MomentsOfLamp;
   /// Sums over all lamps, without ghost cells: power of first-scattered light through voxel faces, W, and the
-  /// first-collision source without it, W / (length^3 sr).
+  /// first-collision source without this light, W / (length^3 sr).
   Buffer<float> ThroughFaces, ScatteredInVoxels;
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;

@@ -206,8 +206,8 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 }
 
 // Marks the rows that contain voxels with a nonzero skin_of().
-//   skins  [z][y], 1: marked; 2: such a voxel is opaque, over 100 mean free paths; 3: over 1e9, where most of its
-//          fluence is rounding error; initially 0
+//   skins  [z][y], 1: marked; 2: one of these voxels is opaque (over 100 mean free paths); 3: one has over 1e9, so that
+//          most of its fluence is rounding error; initially 0
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)

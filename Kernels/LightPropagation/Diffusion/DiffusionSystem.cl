@@ -109,16 +109,17 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
   return layout->incoming[d] + arrays->faces[row * face_cells(layout) + cell] / face_area(layout, d / 2);
 }
 
-// Fluence difference over half a voxel along an axis that is equivalent to the net flux of the known source, which is
-// emission and first collisions (numerics.md, Eq. (53a)).
+// Fluence difference over half a voxel along an axis that is equivalent to the net flux of the known source (emission
+// and first collisions; numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
   return layout->moments ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i]
                          : 0.0f;
 }
 
-// Fluence difference equivalent to the known source's net flux, as for drive(), but between the centres of voxel i and
-// of voxel j, its neighbour through face d. For drive_out() it is between the centre and the box's face d.
+// Fluence difference that is equivalent to the net flux of the known source (emission and first collisions), as for
+// drive(), but between the centres of voxel i and of voxel j, its neighbour through face d. For drive_out() it is
+// between the centre and the box's face d.
 static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
 {
   return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
@@ -277,9 +278,8 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
   return remainder;
 }
 
-// Power that the medium sends to face d of the box from inside, by the solution of the diffusion system, before
-// reflection and without the response to incident light, W (m of numerics.md, Eq. (76b)). `share` is the face's part of
-// remainder_of_borders().
+// Power, W, that would reach face d of the box from inside if no light were incident, before reflection, by the
+// solution of the diffusion system (m of numerics.md, Eq. (76b)). `share` is the face's part of remainder_of_borders().
 static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, float passes, float share)
 {

@@ -12,9 +12,9 @@
 
 namespace tyndall
 {
-/// Settings with the values of a quality level for a scene: number of directions, also for uncollided light, starts of
-/// rays, tolerance, and the error of localised emission. Only settings at their default values are changed. Cost and
-/// accuracy of the levels were measured (measurements.md).
+/// Settings with the values of a quality level for a scene: numbers of directions for scattered and for uncollided
+/// light, starting positions of rays, tolerance, and error of localised emission. Only settings at their default values
+/// are changed. Cost and accuracy of the levels were measured (measurements.md).
 ///
 /// The result depends on whether light is incident through faces, from a sky or an environment (only then uncollided
 /// light has finer directions), whether any voxel scatters (else the directions are those of uncollided light), and

@@ -11,14 +11,14 @@ namespace tyndall
 {
 /// Corrects the escaped power after each sweep of scattered light (numerics.md, Eq. (46)). For each voxel it adds the
 /// power that would escape along the finer quadrature of the boundary light, and subtracts the power that escapes along
-/// the usual quadrature. A uniform radiance field then stays uniform, although boundary light enters along the finer
-/// quadrature and is swept along the usual one.
+/// the quadrature of scattered light. A uniform radiance field then stays uniform, although boundary light enters along
+/// the finer quadrature and scattered light is swept along its own.
 class EscapeCorrection
 {
 public:
   /// @param layout, scattering, sigma_t  layout and coefficients of the medium; must outlive this object
-  /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 along the finer and the usual
-  ///   quadrature (TransportParts::FindEvenSky), W length, [channel][voxel]
+  /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 along the finer quadrature, and
+  ///   along that of scattered light (TransportParts::FindEvenSky), W length, [channel][voxel]
   EscapeCorrection(Device& device, const VolumeLayout& layout, const TruncatedScattering& scattering,
     const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
