@@ -192,8 +192,8 @@ private:
     return this->Settings.seriesAfter > 0 && static_cast<int>(this->Record.All().size()) >= this->Settings.seriesAfter;
   }
 
-  /// Adds the orders that were not swept to the fluence: a geometric series that begins with the last order, and whose
-  /// ratio is that of the last two orders.
+  /// Extends the fluence by the orders that were not swept: they continue the last order as a geometric series, with
+  /// the ratio of the last two orders.
   void AddSeries()
   {
     if (this->GoesOnAsSeries() && this->GoesOn > 0.0)

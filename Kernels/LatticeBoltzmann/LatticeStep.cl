@@ -149,8 +149,8 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
   }
 }
 
-// Copies densities to the halo across a periodic axis. One work-item per direction and
-// per value of a plane perpendicular to the axis.
+// Copies densities to the halo across a periodic axis. One work-item per direction and value in a plane perpendicular
+// to the axis.
 //   u, v   strides within the plane
 //   along  stride along the periodic axis
 //   n      voxels along the periodic axis

@@ -404,7 +404,7 @@ LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, bool withIncident, 
         this->SweepWhole(begin);
       }
       this->Work += end - begin;
-      // Progress, which approaches 1, since the number of sweeps is not known in advance.
+      // The reported progress only approaches 1, because the number of sweeps is not known in advance.
       Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work));
     });
   }

@@ -245,7 +245,7 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
 
 namespace
 {
-/// Whether each face -x, +x, ... +z of a block lies on a face of the box.
+/// For each face -x, +x, ... +z of a block, whether it lies on a face of the box.
 std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic)
 {
   std::array<bool, 6> faces;

@@ -32,8 +32,8 @@ inline real half_diffusion_length(real tau, real sigma_t, real sigma_a)
   return select((real)0.0f, 0.5f * tau * sqrt(3.0f * absorbed), sigma_t > (real)0.0f);
 }
 
-// Conductance of an absorbing half voxel next to a boundary, from which light decays exponentially, relative to that of
-// a half voxel without absorption (numerics.md, Eq. (57)).
+// Conductance of an absorbing half voxel, relative to that of a half voxel without absorption (numerics.md, Eq. (57)).
+// The half voxel lies next to a boundary, from which light decays exponentially.
 inline real at_border(real y)
 {
   real left;

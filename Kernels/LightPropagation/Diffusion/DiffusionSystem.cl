@@ -546,6 +546,6 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
     }
   }
   const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * swept[i] * (0.25f * M_1_PI_F) : 0.0f;
-  // With skin 1 the previous source is not read: it may exceed the range of floats.
+  // If the weight `skin` is 1, the previous source is not read, because it may exceed the range of floats.
   source[begin + i] = skin < 1.0f ? mix(source[begin + i], there, skin) : there;
 }
