@@ -22,8 +22,8 @@ bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 /// scattering is solved by source iteration or diffusion synthetic acceleration (SourceIteration.h,
 /// DiffusionAcceleration.h), whichever is predicted to be faster. If uncollided light is given by another solver,
 /// source iteration is used, since DSA would overestimate the scattering of this light. Anisotropic scattering is
-/// solved here only by DSA, if many orders are needed, in spherical harmonics up to the degree that `settings.terms`
-/// terms contain. Collective. Other parameters as for SolveDiscreteOrdinates().
+/// solved here only if many orders are needed: by DSA, in spherical harmonics up to the largest degree L with (L + 1)^2
+/// <= `settings.terms`. Collective. Other parameters as for SolveDiscreteOrdinates().
 /// @param even  problem of the scene with isotropic scattering, by AsPropagation(settings)
 /// @return no value if the scene is to be solved by source iteration between directions instead
 std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,

@@ -42,9 +42,9 @@ struct SplitEmission
 
 /// Finds localised emission: connected groups of voxels among the brightest 64th whose emission exceeds four times the
 /// mean of the remaining voxels. Groups must be small (at most an eighth of the box's longest edge), in transparent
-/// surroundings and not opaque, and together carry half of the power; otherwise there are no peaks (a luminous cloud, a
-/// flame). A dark solid that emits hardly more than it absorbs of the incident light is no peak either: its shadow is
-/// swept, and its emission must be swept along the same directions for both to be accurate together. Limits:
+/// surroundings and not opaque, and together carry half of the power; otherwise there are no peaks (as in a luminous
+/// cloud or a flame). A dark solid that emits hardly more than it absorbs of the incident light is no peak either: its
+/// shadow is swept, and its emission must be swept along the same directions for both to be accurate together. Limits:
 /// numerics.md, section 5.6.
 /// @param comesIn  mean incident radiance at the domain's faces, W / (length^2 sr)
 SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});

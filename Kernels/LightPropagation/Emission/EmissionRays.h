@@ -50,7 +50,7 @@ private:
 /// (numerics.md, Eq. (40)), with exact optical lengths. Points in the voxel and directions form a rank-1 lattice in
 /// five dimensions. Each voxel starts with 32 to 4096 rays, more for smaller grids and smaller errors. The number is
 /// doubled, up to 4096, while the two halves of a voxel's rays differ by more than `error`. If the grid is so large
-/// that every voxel would start with 32, voxels far from the peak and cells of the box's faces share fans of rays
+/// that every voxel would start with 32 rays, voxels far from the peak and cells of the box's faces share fans of rays
 /// (EmissionFans.h).
 ///
 /// Guarantees: the light has the symmetries of the scene, and absorbed, scattered and escaped power add up to the
