@@ -66,8 +66,8 @@ void Smooth(std::vector<double>& values, const Grid& grid, int channels)
   }
 }
 
-/// Whether a solve stopped after its first order before convergence. The error of the missing orders cannot be
-/// estimated from one order.
+/// Whether a solve stopped after its first scattering order, before it converged. The error of the missing orders
+/// cannot be estimated from one order.
 bool IsStoppedTooSoonToTell(const LightField& light)
 {
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
@@ -136,9 +136,9 @@ struct VarianceOfAverages
 };
 
 /// Sets fluenceError and relativeError of `light`. The squared errors of voxels are smoothed over neighbouring coarse
-/// voxels and then scaled to a given sum. This sum, relative to the sum of squared fluences, is the larger of two
-/// values, computed over coarse voxels and over fine voxels (InVoxels), because coarse voxels do not resolve the
-/// decrease of light next to lamps.
+/// voxels and then scaled, so that their sum, relative to the sum of squared fluences, is the larger of two values: one
+/// computed over coarse voxels, one over fine voxels (InVoxels). Coarse voxels alone do not resolve the decrease of
+/// light next to lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();

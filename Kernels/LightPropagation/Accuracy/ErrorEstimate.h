@@ -26,7 +26,7 @@ struct ErrorOrders
   /// Orders of convergence in voxel size assumed by SolveToTargetError(): in general, and if the scene has lamps with a
   /// position.
   double ofTarget = 1.7, ofTargetBesideLamps = 1.4;
-  /// Largest number of directions per cube face that a target error may choose.
+  /// Largest number of directions per cube face that SolveToTargetError() may choose.
   int mostDirections = std::numeric_limits<int>::max();
 };
 
@@ -63,8 +63,8 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 /// estimate is too large if the medium has edges as sharp as a voxel (coarsening blurs them), and wrong by up to a
 /// factor of two either way next to a lamp. Measured accuracy: measurements.md.
 ///
-/// There is no estimate for a solve that stopped after its first order before convergence, because one order does not
-/// show the rate of decrease: relativeError is NaN, and fluenceError empty.
+/// There is no estimate for a solve that stopped after its first scattering order, before it converged, because one
+/// order does not show how fast orders decrease: relativeError is NaN, and fluenceError empty.
 ///
 /// The estimate takes 1 / 8 + 1 / 20 of the time of the sweeps, more on small grids. An axis of a single voxel is not
 /// coarsened, and its error in voxel size is not estimated.

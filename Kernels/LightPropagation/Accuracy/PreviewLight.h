@@ -41,9 +41,9 @@ PropagationSettings SettingsOfPreview(PropagationSettings settings);
 /// A small coarse grid is gathered and solved by the first rank that has voxels, which is faster than on several ranks;
 /// the result then equals that of a serial preview for any decomposition. A larger coarse grid is decomposed.
 /// Collective.
-/// @param alike  settings that are checked to be the same on all ranks, like the scene
-/// @param coarse  coarse grid, over the same box as the domain's grid and along no axis finer than it
-/// @param small  number of coarse voxels up to which one rank solves
+/// @param alike  settings; they and the scene are checked to be the same on all ranks
+/// @param coarse  grid over the same box as the domain's grid, with at most as many voxels along each axis
+/// @param small  largest number of coarse voxels that one rank solves alone
 /// @throws InvalidInput  on every rank, if settings or scenes differ
 /// @throws the exceptions of `solve`
 LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alike, const Grid& coarse,

@@ -203,13 +203,14 @@ private:
     }
   }
 
-  /// Computes an upper estimate of the error without a further solve. Takes the whole difference from a coarse solution
-  /// with another number of directions as error due to voxel size, and adds the predicted angular error. Stores the
+  /// Computes an upper estimate of the error without a further solve. Attributes the whole difference from a coarse
+  /// solution, which has another number of directions, to voxel size, and adds the predicted angular error. Stores the
   /// result as error estimate of the light.
-  /// @param other  fluence of that coarse solution
+  /// @param other  fluence of the coarse solution
   /// @param error  predicted angular error
   /// @param order  order of convergence in voxel size
-  /// @return whether the error is at most Goal, so that the search ends without separating the error due to voxel size
+  /// @return whether the error is at most Goal; the search then ends without a separate estimate of the error due to
+  ///   voxel size
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);
@@ -225,11 +226,11 @@ private:
     return all <= this->Goal;
   }
 
-  /// Factor by which the error due to voxel size decreases if voxels have half the edge length; 4 for light propagation
+  /// Ratio of the error due to voxel size to that error with voxels of half the edge length; 4 for light propagation
   /// maps.
   double FallInHalves() const { return std::pow(2.0, this->Orders.inSpace); }
 
-  /// Solves with voxels of half the edge length, if the error due to voxel size is predicted to be small enough then.
+  /// Solves with voxels of half the edge length, if this is predicted to reduce the error due to voxel size enough.
   void TryHalves()
   {
     const double room = this->RoomBeside(this->Parts.inSpace / this->FallInHalves());

@@ -33,8 +33,9 @@ int CellsPerEdge(int perFace, const std::string& name)
   return n;
 }
 
-/// Tangent (coordinate on a cube's face at distance 1 from the cube's centre, -1 to 1) of the point twicePosition / 2
-/// cells from the lower end of an edge of n cells. An exactly odd function about the middle of the edge.
+/// Coordinate, -1 to 1, of a point on the edge of a cube's face that is divided into n cells. The point is
+/// twicePosition / 2 cells from the edge's lower end; the face is at distance 1 from the cube's centre. Exactly odd
+/// about the edge's middle.
 double Tangent(bool equiangular, int n, double twicePosition)
 {
   const double fromMiddle = (twicePosition - n) / n; // in [-1, 1]
@@ -54,9 +55,9 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index, among a face's directions, of the direction whose cell contains the point (s, t) of the face; coordinates are
-/// from -1 to 1. For quadratures whose cells do not form a grid. By symmetry, the nearest direction of each orbit
-/// (directions that are equivalent by symmetry) is in the same eighth of the face as the point.
+/// Index, among a face's directions, of the direction whose cell contains the point (s, t) of the face, -1 <= s, t <=
+/// 1. Used for quadratures whose cells do not form a grid. By symmetry, the nearest direction of each orbit (directions
+/// that are equivalent by symmetry) is in the same eighth of the face as the point.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -174,8 +175,8 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
 
 /// Scales the radiance of each direction so that the flux through each face of the cube equals that of the environment,
 /// up to the quadrature's half-range error. The factor of a direction is 1 + sum over faces of (coefficient of the
-/// face) (cosine to its normal), limited to 0.5 to 2. The coefficients are those whose factors are nearest to 1
-/// (numerics.md, Eq. (31a)).
+/// face) (cosine to its normal), limited to [0.5, 2]. The coefficients are chosen such that the factors are nearest to
+/// 1 (numerics.md, Eq. (31a)).
 void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
 {
   for (int c = 0; c < 3; ++c)

@@ -78,8 +78,8 @@ DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spaci
 double HalfRangeFlux(const DirectionSet& set);
 
 /// Unit vector from the cube's centre through a point of face `face`.
-/// @param s, t  coordinates of the point, -1 to 1, along the next axis after the face's normal and the next but one
-///   (cyclically)
+/// @param s, t  coordinates of the point, -1 to 1, along the two axes that follow the axis of the face's normal
+///   cyclically
 std::array<double, 3> DirectionThroughFace(int face, double s, double t);
 
 /// Index of the direction of `set` whose cell contains `omega` (of any length except 0).

@@ -128,8 +128,8 @@ struct Position
   }
 };
 
-/// Sideways move of a straight ray, with all of its power, in plane `plane` of voxels; none if the ray stays in its
-/// column of voxels there.
+/// Move by which a straight ray, with all of its power, changes its column of voxels in plane `plane` of voxels; no
+/// move if it stays in its column.
 Move WholeMove(double start, double tangent, int plane)
 {
   const Position now(start + tangent * plane);
@@ -216,8 +216,8 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Copies of a bundle of directions, one for each of the mapResolution x mapResolution positions in a voxel at which
-/// rays start.
+/// Copies of a bundle of directions: one for each position in a voxel at which rays start. There are mapResolution x
+/// mapResolution positions.
 std::vector<Bundle> OnLattice(const Bundle& bundle, int mapResolution)
 {
   std::vector<Bundle> all;
@@ -274,9 +274,9 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves along u and v are combined if both tangents and both starting positions are equal. In other cases of moves at
-/// the same depth, the move along the axis with the larger tangent comes first, so that the result does not depend on
-/// the bundle's orientation.
+/// Moves along u and v are combined if both tangents and both starting positions are equal. If other moves are at the
+/// same depth, the move along the axis with the larger tangent comes first, so that the result does not depend on the
+/// bundle's orientation.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

@@ -114,8 +114,8 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
 
-/// Copies of `bundles` reduced to members (directions) that march one way along the axis (0 forward, 1 backward) and
-/// whose direction is lit; bundles without such members are omitted.
+/// Copies of `bundles` with only those members (directions) that are lit and march one way along the axis (0 forward, 1
+/// backward). Bundles without such members are omitted.
 std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit);
 
 /// Number of rays of all bundles per voxel, forward and backward.

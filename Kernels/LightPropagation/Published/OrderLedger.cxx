@@ -13,8 +13,8 @@ namespace
 /// Maximum number of orders; no convergent solve needs more.
 constexpr int MostOrders = 10000;
 
-/// The solve ends when, besides light that wraps around periodic axes without end, at most this fraction of the
-/// remaining power is left.
+/// The solve ends when the next order would carry at most this fraction of the remaining power. Light that wraps around
+/// periodic axes without end does not count.
 constexpr double Negligible = 1e-3;
 constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }

@@ -68,7 +68,7 @@ public:
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< light of all orders so far
-  /// Descriptions, for LightField::leftOut, of computations that are omitted because the scene does not need them.
+  /// Computations that are omitted because the scene does not need them, as texts for LightField::leftOut.
   std::vector<std::string> LeftOut() const;
 
 private:

@@ -1,5 +1,5 @@
 // Collection as published (Gruson et al. 2012, Algorithm 2, second half): each voxel reads the temporary buffers of all
-// directions and updates U and I. The host defines
+// directions and updates the source U and the scattered radiance I. The host defines
 //   CHANNELS  1 or 3
 //   MOMENTS   number of moments: the fluence, and more if scattering is anisotropic
 //   COLOURED  1 if sigma has CHANNELS channels, 0 if all share one
@@ -15,7 +15,7 @@
 //   coefficients   [MOMENTS][directions], starting at index `first`
 //   contributions  T over sigma_s, [direction][CHANNELS][volume], length W / (length^2 sr)
 //   moments        [MOMENTS][CHANNELS][volume]
-//   add            0: first batch of the order, moments are overwritten; 1: added to
+//   add            0: first batch of the order, moments are overwritten; 1: they are added to
 __kernel void add_directions(const int volume, const int directions, const int add, const int first,
   __global const float* coefficients, __global const float* contributions, __global float* moments)
 {
@@ -43,8 +43,8 @@ __kernel void add_directions(const int volume, const int directions, const int a
 // far. One work-item per voxel and channel.
 //   moments0, moments1  moments of this order from the directions whose ray maps use memory layout 0, [z][y][x], and
 //                       from those that use layout 1, [x][z][y]; moments0 receives their sum
-//   totals              moments of all orders, [MOMENTS][CHANNELS][voxel in layout 0]; added to
-//   part                the sources U to compute, as multiples of moments; `parts` of them
+//   totals              moments of all orders, [MOMENTS][CHANNELS][voxel in layout 0]; the kernel adds to them
+//   part                the moment and the factor that give each source U; an array of `parts` elements
 __kernel void update_sources(const PublishedLayouts info, const int parts, __global const PublishedPart* part,
   __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
   __global float* sources0, __global float* sources1)

@@ -92,7 +92,8 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   return boundary;
 }
 
-/// A small patch of the unit sphere: centre, solid angle, sr, and index of the stored direction in whose cell it lies.
+/// A small patch of the unit sphere: its centre, its solid angle (sr), and the index of the stored direction in whose
+/// cell it lies.
 struct Patch
 {
   glm::dvec3 omega;
@@ -110,9 +111,9 @@ std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
   return patches;
 }
 
-/// Table of the mean of a phase function over a patch of the sphere, by the angle between light and patch. The mean is
-/// taken over a ring around the light's direction, as wide as a round patch of the same area. It is exact on the ring,
-/// so a forward peak narrower than a patch keeps its power.
+/// Table of the mean of a phase function over a patch of the sphere, as a function of the angle between the light's
+/// direction and the patch. The mean is taken over a ring around the light's direction, as wide as a round patch of the
+/// same area. It is exact on the ring, so a forward peak narrower than a patch keeps its power.
 class PatchMeans
 {
 public:
@@ -127,10 +128,10 @@ public:
     }
   }
 
-  /// Mean at a cosine between light and patch, 1/sr.
+  /// Mean of the phase function, 1/sr, for this cosine of the angle between the light's direction and the patch.
   double At(double cosine) const
   {
-    // The table is uniform in sin(angle / 2)
+    // Rows of the table have equal steps of sin(angle / 2)
     const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0));
     const int row = std::min(static_cast<int>(place), static_cast<int>(Rows));
     return this->Means[row] + (place - row) * (this->Means[row + 1] - this->Means[row]);
@@ -163,7 +164,7 @@ std::vector<std::vector<double>> ScatteringFactors(
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      // `all` would be 1 if the rings of PatchMeans were patches; dividing by it conserves power
+      // `all` differs from 1, because PatchMeans averages over rings instead of patches; dividing by it conserves power
       factors[d][i] += from.weight * scattered[d] / all;
     }
     cellSize[i] += from.weight;
@@ -187,8 +188,8 @@ std::vector<std::vector<double>> ScatteringFactors(
   return factors;
 }
 
-/// Chooses `count` directions evenly over the sphere: cell centres of the cube faces if count is 6 n^2, else Fibonacci
-/// points.
+/// Chooses `count` directions that are evenly distributed over the sphere: cell centres of the cube faces if count is 6
+/// n^2, else Fibonacci points.
 std::vector<std::array<double, 3>> EvenDirections(int count)
 {
   std::vector<std::array<double, 3>> directions;

@@ -22,9 +22,9 @@ namespace tyndall
 ///
 /// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr). Deposits are stored divided by
 /// sigma_s, so that fluence, the sum of deposits over all directions, is 4 pi I / sigma_s in the paper's notation, and
-/// exists in vacuum too. If a box is periodic along some axes, light that enters through a face parallel to the
-/// marching axis starts at the positions of the map's rays within their voxels, not at the face. Such a box should
-/// therefore be several voxels wide.
+/// exists in vacuum too. If a box is periodic along some axes, rays of light that enters through a face parallel to the
+/// marching axis start at the same positions within their voxels as all rays of the map, not at the face. Such a box
+/// should therefore be several voxels wide.
 class PublishedModel
 {
 public:
@@ -63,9 +63,9 @@ public:
     int moment = 0;
     double factor = 1.0;
   };
-  /// All moments of light of fluence 1 and mean direction `mean`, as another solver computed it. A fraction |mean| of
-  /// this light is assigned to the nearest direction of the quadrature; the remainder is isotropic. The net flux is
-  /// exact.
+  /// All moments of light of fluence 1 and mean direction `mean`, for light that another solver computed. A fraction
+  /// |mean| of this light is assigned to the nearest direction of the quadrature; the remainder is isotropic. The net
+  /// flux is exact.
   std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
   /// Source U of a source direction, divided by sigma_s.
   Part Source(int sourceDirection) const;
@@ -86,16 +86,15 @@ private:
   std::vector<std::vector<double>> Coefficients;
 };
 
-/// Reason why the published scheme cannot solve a scene: the phase function varies between voxels or channels, or faces
-/// reflect. Empty if it can solve the scene.
+/// Reason why the published scheme cannot solve a scene; empty if it can. Reasons: the phase function varies between
+/// voxels or channels, or faces reflect.
 std::string WhyNotPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput if WhyNotPublished() is not empty; the error's text is that reason
 void CheckPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput if a face reflects: neither published algorithm has reflecting faces
 void CheckPublishedFaces(const Illumination& illumination);
 
-/// Descriptions, for LightField::leftOut, of lights that the published scheme does not support; empty if there are
-/// none.
+/// Lights that the published scheme does not support, as texts for LightField::leftOut; empty if there are none.
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 
 /// Adds the uncollided light of another solver to the moments of an order.
@@ -105,7 +104,7 @@ void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::si
 
 /// Writes fluence, scattered radiance and, if requested, net flux to `field`, from the moments of all orders. Also sets
 /// its members leftOut and converged. field.convergence must be set before.
-/// @param moment  returns the moment of an index, by voxel with channels interleaved
+/// @param moment  returns the values of the moment with a given index, [voxel][channel]
 void WritePublishedLight(const PublishedModel& model, const Medium& medium, const MediumTraits& traits,
   const Illumination& illumination, const PropagationSettings& settings,
   const std::function<std::vector<float>(int)>& moment, LightField& field);
@@ -125,8 +124,8 @@ struct MapGeometry
   double slopeU, slopeV; ///< transverse shift per plane, in voxels
   double length;         ///< path length of a ray in one plane of voxels
   double beamPower;      ///< power of a ray at radiance 1: weight times perpendicular area, length^2 sr
-  /// density_i of Eq. (13), 1/length: factor from a ray's radiance times path length to its contribution to the mean
-  /// radiance of the voxel
+  /// density_i of Eq. (13), 1/length: a ray's radiance times its path length in a voxel, times this factor, is its
+  /// contribution to the mean radiance of the voxel
   double density;
 
   /// Index along `axis` of the plane of voxels that rays enter after crossing `crossed` planes.
@@ -138,8 +137,8 @@ struct MapGeometry
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
   /// Differs from `start` if the ray has wrapped around a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
-  /// Path, in a scattering order, of the rays of one sub-map. Rays start at resolution^2 positions within their voxels;
-  /// a sub-map has those that start at the same position. Sub-maps are numbered row by row.
+  /// Path of the rays of one sub-map in a scattering order. Rays start at resolution^2 positions within their voxels;
+  /// the rays that start at the same position form a sub-map. Sub-maps are numbered row by row.
   GridWalk Walk(int resolution, int subMap, int order) const;
 
 private:
@@ -147,9 +146,9 @@ private:
   bool Continues; ///< whether rays wrap around the marching axis after the last plane
 };
 
-/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries less than 1e-9 of the path
-/// through a plane apart are crossed at once, so that rounding affects all rays of a direction equally. A boundary at
-/// the very end of the path is crossed in the next order.
+/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double precision. Voxel boundaries less than 1e-9
+/// of the path through a plane apart are crossed at once, so that rounding affects all rays of a direction equally. A
+/// boundary at the very end of the path is crossed in the next order.
 class GridWalk
 {
 public:

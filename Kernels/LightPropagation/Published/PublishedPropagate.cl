@@ -15,8 +15,8 @@
 
 #define PAD REAL_WIDTH
 
-// Number of floats for the outgoing radiance of one direction, W / (length^2 sr), summed over rays: one per row of the
-// map through the face normal to u, one through the face normal to v, one per row beyond the last plane.
+// Number of floats for the outgoing radiance of one direction, W / (length^2 sr), summed over rays. Each row of the map
+// has one sum for the face normal to u and one for the end of the marching axis; one sum is for the face normal to v.
 #define ESCAPED(map) (2 * (map).sizeV + 1)
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
@@ -31,11 +31,11 @@ inline real depth(real gone, real tau, float length)
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
 }
 
-// Sets the initial radiance of the rays, in both ray maps, so that both contain the border. One work-item per element
-// of the map with border, direction and channel.
+// Sets the initial radiance of the rays. It is written to both ray maps, because both need the border. One work-item
+// per element of the map with border, direction and channel.
 //   boundary  incident radiance through the faces across w, u, v: [direction][3][CHANNELS]
-//   carried   radiance, by voxel of the first plane, of the rays that have wrapped around the marching axis;
-//             carried_stride floats per direction, from index carried_first on
+//   carried   radiance of the rays that have wrapped around the marching axis, per voxel of the first plane; the
+//             batch's first value has the index carried_first, and each direction has carried_stride floats
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
@@ -70,8 +70,8 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
 }
 
-// Adds to `escaped` the radiance that leaves through the sides as rays move into the next voxel; at an edge, half of it
-// through each side.
+// Adds to `escaped` the radiance that leaves through the sides as rays move into the next voxel. At an edge of the box,
+// half of the radiance is counted at each of the two sides.
 static void leave_sides(
   const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
@@ -111,8 +111,9 @@ inline real deposit(real radiance, real sigma_s, float length)
 }
 
 #if REAL_WIDTH > 1
-// On periodic axes, copies the radiance of row v of a ray map to the border: along u to the opposite ends of the row,
-// along v to the border row beyond the opposite side. Called after the last write to the row.
+// Copies the radiance of row v of a ray map to the border on periodic axes: along u, both ends of the row to the
+// opposite ends; along v, an outermost row to the border row beyond the opposite side. Called after the last write to
+// the row.
 static void wrap_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
   __global float* row = ray_row(rays, map, parity, slot, v);
@@ -213,7 +214,8 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 // Sums the radiance of the rays that leave after the last plane. If they wrap around the marching axis, stores their
 // radiance in `carried` for the next order, carried_stride floats per direction. One work-item per row of the map,
 // direction and channel.
-//   crossings  for each direction, from index `first` on: its `parity` says in which of the two ray maps the rays are
+//   crossings  one per direction, from index `first` on; the member `parity` says in which of the two ray maps the rays
+//              are
 __kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)

@@ -261,8 +261,8 @@ std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
   return radiance;
 }
 
-/// Adds the incident power of a batch to `tally`: power of rays that start on the first plane, and of rays that enter
-/// through the sides.
+/// Adds the incident power of a batch of directions to `tally`: that of rays that start on the first plane, and that of
+/// rays that enter through the sides.
 void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
 {
   for (int i = 0; i < batch.count; ++i)

@@ -39,8 +39,8 @@ public:
     std::size_t carriedFirst = 0;
   };
 
-  /// Directions of one cube face whose rays are propagated together. The temporary buffers T hold their deposits at the
-  /// same time.
+  /// Directions of one cube face whose rays are propagated together. The temporary buffers T hold the deposits of all
+  /// of them.
   struct Batch
   {
     int first = 0, count = 0; ///< range of directions
@@ -112,7 +112,8 @@ public:
   /// @param incident  whether boundary light is incident (first order only); its power is counted in `tally`
   void Begin(const Batch& batch, bool incident, SweepTally& tally);
 
-  /// Traces one ray per voxel of the first plane and direction through all planes. Adds escaped power to `tally`.
+  /// Traces rays through all planes: for each direction, one ray per voxel of the first plane. Adds escaped power to
+  /// `tally`.
   /// @param emits   whether the source U is nonzero in any voxel
   /// @param report  receives the completed fraction of the pass
   void Send(

@@ -35,7 +35,8 @@ VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
   {
     this->row[layout] = RoundUp(across[layout][0], width);
     const cl_int rows = this->row[layout] * across[layout][1];
-    // Pads planes whose size would be a multiple of 4 KB, whose voxels would map to the same cache sets.
+    // Pads planes whose size would be a multiple of 4 KB: voxels of neighbouring planes would map to the same cache
+    // sets.
     this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0);
     this->volume[layout] = this->plane[layout] * across[layout][2];
   }

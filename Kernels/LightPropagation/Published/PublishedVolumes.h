@@ -32,8 +32,8 @@ struct PublishedVolumes
   int Channels() const { return this->Model.Channels(); }
   std::size_t LayoutSize(int layout) const; ///< floats of one quantity in all channels
 
-  /// Index, among the sources in Sources[layout], of the source U of a source direction; -1 if no ray map reads it in
-  /// this layout.
+  /// Index of the source U of a source direction among the sources in Sources[layout]; -1 if no ray map reads this
+  /// source in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
   /// Converts an array that is x fastest, with channels interleaved, to memory layout 0 or 1.

@@ -140,7 +140,8 @@ void AxisSweep::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
   }
 }
 
-/// Continues rays around a periodic axis until almost no power is in transit, or they have crossed `mostPlanes` planes.
+/// Continues rays around a periodic axis until almost no power is in transit, or until they have crossed `mostPlanes`
+/// planes.
 void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
 {
   const int planes = this->Plan.PatternPlanes();
@@ -165,16 +166,16 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   }
 }
 
-/// Queues the launches of the kernel `sweep`: in each of them the work-items carry rays through the ranges of planes
-/// that `schedule` lists.
+/// Queues the launches of the kernel `sweep`. `schedule` lists the range of planes through which each work-item carries
+/// rays in each launch.
 /// @param seconds  upper estimate of the time of all launches together, s
 void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
   const SliceStream::Schedule& schedule, double seconds, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // With angular moments, or with light given or summed per cell of the faces, a bundle never crosses several planes
-  // together. One program, compiled for periodic boxes, then serves both periodic and open boxes.
+  // A bundle never crosses several planes together if there are angular moments, or if light is given or summed per
+  // cell of the faces. In these cases the program that is compiled for periodic boxes also serves open boxes.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);

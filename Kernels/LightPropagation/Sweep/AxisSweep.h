@@ -16,8 +16,8 @@
 namespace tyndall
 {
 /// Sweep along one axis on a CPU: carries the rays of bundles (sets of symmetric directions, RayBundles.h) through a
-/// volume and deposits the power that they lose. Propagation and collection are done in one pass, without a buffer per
-/// direction (Gruson et al. 2012, section 4.1, need one; numerics.md, section 4).
+/// volume and deposits the power that they lose. Propagation and collection are done in one pass (numerics.md, section
+/// 4), without the buffer per direction that Gruson et al. (2012, section 4.1) need.
 ///
 /// Memory: the maps hold the power of each ray, one float per voxel of a plane, direction, channel and sense of
 /// marching (forward, backward); each work-item has scratch for a few planes. Both are in the workspace, except the
@@ -31,8 +31,8 @@ public:
   AxisSweep(Device& device, const SweepVolume& volume, const AxisBundles& rays, const std::array<bool, 3>& periodic,
     SweepWorkspace& workspace, bool sameBoundary);
 
-  /// Starts one sweep through the volume, forward and backward. Only queues the work on an open axis; waits on a
-  /// periodic axis.
+  /// Starts one sweep through the volume, forward and backward. On an open axis, only queues the work; on a periodic
+  /// axis, also waits for it.
   /// @param boundary  incident light; empty: none
   /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; rays that are
   /// then still in transit are continued in the next sweep
@@ -80,7 +80,8 @@ private:
   SweepKernel Kernel;
 
   Buffer<float> OwnMaps; ///< power of the rays of a periodic axis, W; unused on an open axis
-  /// Escaped power per cell of the box's faces, W, [work-item or, if all share cells, 1][channel][cell].
+  /// Escaped power per cell of the box's faces, W, [work-item][channel][cell]; one array [channel][cell] if all
+  /// work-items share the cells.
   std::optional<ExactValues> FaceCells;
   /// Power of the rays, W, summed over rows of the maps, [sense of marching][bundle][row][channel].
   Buffer<float> Sums;
@@ -88,8 +89,8 @@ private:
   Buffer<CrossingInfo> FirstCrossings;
   /// Copies slices of a volume in host memory to the device; null: the volume is in device memory
   std::unique_ptr<SliceStream> Stream;
-  /// Ranges of planes that work-items cross in each launch of the kernel: `First` in the laps in which rays start,
-  /// `Rounds` in further laps around a periodic axis
+  /// Ranges of planes that work-items cross in each launch of the kernel. `First`: in the laps in which rays start;
+  /// `Rounds`: in further laps around a periodic axis
   SliceStream::Schedule First, Rounds;
 
   /// Cached incident light of each group of channels that are swept together; key: index of the group's first value in

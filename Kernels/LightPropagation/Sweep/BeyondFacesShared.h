@@ -4,8 +4,8 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Where to find the values that a block received from its neighbours, one per cell of the block's faces (BeyondFaces
-/// in Pipelined/AcrossFaces.h).
+/// Memory layout of the values that a block received from its neighbours, one per cell of the block's faces
+/// (BeyondFaces in Pipelined/AcrossFaces.h).
 typedef struct
 {
   /// Index of the first cell of each face of the block, -x to +z; -1: the face is on the domain's boundary
@@ -15,7 +15,7 @@ typedef struct
 SHARED_END
 
 #ifdef __OPENCL_C_VERSION__
-// Index of the value of the voxel next to voxel `at` across face d of the block; -1: that voxel is in the block or
+// Index of the value of the voxel that adjoins voxel `at` at face d; -1 if the adjoining voxel is in the block or
 // outside the domain.
 static long place_beyond(const BeyondFacesInfo* beyond, const int* size, const int* at, int d)
 {

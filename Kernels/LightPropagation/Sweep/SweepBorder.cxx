@@ -52,9 +52,10 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, H
 }
 
 /// Writes the incident power of all rays of one bundle member (direction). Rays enter at the face where they start.
-/// They also enter through the faces parallel to the marching axis, as many as leave there: one ray per row of voxels
-/// for each move along u, one ray per column for each move along v. If rays move along u and v at once, half of the
-/// power that enters at the corner of a plane comes through the face normal to u and half through the face normal to v.
+/// They also enter through the faces parallel to the marching axis, where as many rays enter as leave: one ray per row
+/// of voxels for each move along u, one ray per column for each move along v. If rays move along u and v at once, half
+/// of the power that enters at the corner of a plane comes through the face normal to u and half through the face
+/// normal to v.
 void SweepBorder::EnterMember(
   const SweepBoundary& boundary, std::size_t b, int way, int m, const std::array<double, 2>& moves)
 {

@@ -11,7 +11,7 @@ namespace tyndall
 std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes);
 
 /// Adds power that escaped through the faces parallel to the marching axis to SweepTally::out.
-/// @param left  escaped power, W, consecutive arrays [-u, +u, -v, +v][channel], which are added up
+/// @param left  escaped power, W, as consecutive arrays [-u, +u, -v, +v][channel], which are summed
 void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally);
 
 /// Incident light of a sweep along one axis, in the layout of the sweep's buffers. Each array has values for both
@@ -30,8 +30,8 @@ public:
   /// @param boundary  incident radiance; not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
-  /// Incident power of a ray, W, [sense][bundle][member (direction)][channel]; components x, y, z: power if the ray
-  /// enters through the face normal to u, through the face normal to v, or at the face where rays start.
+  /// Incident power of a ray, W, [sense][bundle][member (direction)][channel]; the components x, y and z are its power
+  /// if it enters through the face normal to u, through the face normal to v, and at the face where rays start.
   std::vector<cl_float4> rays;
 
   /// Power of each ray before it crosses the first plane, W, in the layout of a sweep's maps (MapsInfo in

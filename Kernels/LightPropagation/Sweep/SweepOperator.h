@@ -26,25 +26,25 @@ struct Deposit
   /// Power that enters each voxel through each of its faces (numerics.md, Eq. (29)), W, [channel][-x, +x, -y, +y, -z,
   /// +z][voxel]; null: not computed
   const Buffer<float>* partialCurrents = nullptr;
-  /// First moments of the deposit of lamps, W length, [channel][-x, +x, -y, +y, -z, +z][voxel]: path integral times
-  /// the distance, in voxels (0 to 1/2), of the mean position of collisions from the voxel's centre towards each face
-  /// (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForFirstMoments. Null: not computed.
+  /// First moments of the deposit of lamps, W length, [channel][-x, +x, -y, +y, -z, +z][voxel]: for each face, the path
+  /// integral times the displacement, in voxels (0 to 1/2), of the mean position of collisions from the voxel's centre
+  /// towards the face (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForFirstMoments. Null: not computed.
   const Buffer<float>* firstMoments = nullptr;
   /// Escaped power per cell of the box's faces, W, [channel][cell] (BoxFaces.h); null: not computed. Requires a sweep
   /// of the whole domain.
   const Buffer<float>* faceOut = nullptr;
-  /// Whether escaped power is spread along a face. A ray nearly parallel to a face meets it only every few cells; its
-  /// power is then spread over the cells between two such crossings. False: all of its power leaves through the cell
-  /// that it meets, as for incident light.
+  /// Whether escaped power is spread along a face. A ray nearly parallel to a face meets it only every few cells. Its
+  /// power is then spread over all cells up to the next cell that it meets. False: all of its power leaves through the
+  /// cell that it meets, as for incident light.
   bool spreadsAside = false;
 };
 
-/// Optical thickness of a voxel below which collisions of lamps' light are taken as uniform in the voxel.
+/// In voxels of smaller optical thickness, collisions of lamps' light are taken as uniformly distributed.
 constexpr float ThinForFirstMoments = 0.02f;
 
-/// Rule by which the power of a ray that leaves through a face parallel to the marching axis is assigned to the cells
-/// of that face, one per plane. A ray nearly parallel to the face meets only few of the cells; it may represent the
-/// power that leaves through several of them (Deposit::spreadsAside).
+/// Rule that assigns the power of a ray to cells of a face, one cell per plane of voxels. The ray leaves through this
+/// face, which is parallel to the marching axis. A ray nearly parallel to the face meets only few of the cells; it may
+/// represent the power that leaves through several of them (Deposit::spreadsAside).
 struct AsidePlanes
 {
   int size;
@@ -107,7 +107,7 @@ inline void Add(SweepTally& sum, const SweepTally& tally, int first = 0)
 }
 
 /// Incident radiance, W / (length^2 sr), along `direction` (index in the quadrature) at `face` (0 to 5: -x to +z). For
-/// parallel beams: irradiance across the beam, W / length^2, and `direction` is 0.
+/// parallel beams, the value is the irradiance on a plane normal to the beam, W / length^2, and `direction` is 0.
 using SweepBoundary = std::function<Rgb(int direction, int face)>;
 
 /// Returns the values of `rgb` for the group of channels (VolumeLayout.h) whose first channel is `first`: all three if
@@ -166,10 +166,10 @@ struct SweepRequest
   bool skipsEmpty = false;
 };
 
-/// One sweep: carries light once through the medium, from the sources in its voxels and the light incident on the box's
-/// faces to path integrals, net flux, partial currents and escaped power (numerics.md, section 4). Power is conserved,
-/// Eq. (27). Does not depend on source iteration or its acceleration. SweepInMemory.h sweeps in the memory of one
-/// device; other implementations may sweep slice by slice or over several ranks.
+/// One sweep: carries light of sources in the voxels, and light incident on the box's faces, once through the medium.
+/// Computes path integrals, net flux, partial currents and escaped power (numerics.md, section 4). Power is conserved,
+/// Eq. (27). The interface does not depend on source iteration or its acceleration. SweepInMemory.h sweeps in the
+/// memory of one device; other implementations may sweep slice by slice or over several ranks.
 class SweepOperator
 {
 public:

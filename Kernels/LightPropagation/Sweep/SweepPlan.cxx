@@ -17,7 +17,7 @@ constexpr double SecondsPerRay = 1e-9;
 /// Magnitude below which an angular function (of mean square 1) is taken as zero
 constexpr double ZeroFunction = 1e-6;
 /// Maximum number of groups of bundles that march concurrently in the same sense. Each group follows two slabs (ranges
-/// of planes) behind the previous one, so that they never cross the same planes at the same time.
+/// of planes) behind the previous group, so that two groups never cross the same planes at the same time.
 constexpr int MostGroups = 4;
 
 /// Coefficients of (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), a minimax polynomial with an
@@ -175,8 +175,8 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // At most BundlesTogether bundles cross a tile of rows in one call. If these are all bundles, rows are packed (copied
-  // to scratch) just before bundles cross them, and are then still in the cache.
+  // At most BundlesTogether bundles cross a tile of rows in one call. If there are no more bundles, rows are packed
+  // (copied to scratch) just before the bundles cross them, while they are in the cache.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -205,7 +205,7 @@ void SweepPlan::LayMoments()
   this->momentRow = this->channels * groups * (this->moments.functions - 1) * MomentGroup;
 }
 
-/// Length of the longest segment of a ray in a voxel; for a periodic axis its upper bound, the longest path through a
+/// Length of the longest segment of a ray in a voxel; for a periodic axis an upper bound, the longest path through a
 /// plane.
 double SweepPlan::LongestSegment() const
 {
@@ -235,7 +235,7 @@ void SweepPlan::LayBundles()
   this->eachWay.outside += this->vector;
 }
 
-/// Parameters of a bundle for the kernels; its arrays are placed after those of the bundles described before it.
+/// Describes a bundle to the kernels. Its arrays are placed behind those of the bundles that were described before.
 BundleInfo SweepPlan::Describe(const Bundle& bundle) const
 {
   const std::array<double, 3>& spacing = this->grid.spacing;
@@ -394,9 +394,9 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Scratch of the bundles. With angular moments: the data kept from one tile of rows to the next. Otherwise: the ring
-  // buffers of rows between the stages of crossing a plane. In addition, one row of rays for fractional moves, in which
-  // only a fraction of a ray's power moves.
+  // Scratch memory of the bundles. With angular moments, it holds the data kept from one tile of rows to the next;
+  // otherwise, the ring buffers of rows between the stages of crossing a plane. One more row of rays is for fractional
+  // moves, in which only a fraction of a ray's power moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular

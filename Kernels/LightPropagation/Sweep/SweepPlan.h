@@ -51,8 +51,8 @@ struct SweepPlan : SweepDescription
 
   int vector = 8; ///< number of floats in a vector of the kernels (SIMD width)
   int row = 0;    ///< number of floats in a row of voxels or rays, with its padding
-  /// Number of rows of a plane held in scratch if rows are packed (copied there) just before bundles cross them; 0: all
-  /// rows
+  /// Number of rows of a plane that scratch memory holds if rows are packed (copied to scratch) just before bundles
+  /// cross them; 0: all rows
   int rowsKept = 0;
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
@@ -85,7 +85,8 @@ struct SweepPlan : SweepDescription
   /// Number of planes of the grid that rays cross before they reach the swept box.
   /// @param way  sense of marching: 0 forward, 1 backward
   int PlanesBefore(int way) const;
-  /// Number of planes from where rays start to the end of the swept box; the maximum over both senses of marching.
+  /// Number of planes from the first plane that rays cross to the last plane of the swept box; the maximum over both
+  /// senses of marching.
   int CrossingPlanes() const;
   /// Number of floats of scratch memory per unit of work (the rays that one work-item carries)
   std::size_t ScratchFloats() const;
@@ -102,9 +103,9 @@ struct SweepPlan : SweepDescription
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;
-  /// Lowers PlaneInfo::thin, the extinction below which a voxel counts as thin. Needed for rays that continue around a
-  /// periodic axis beyond the planes of their pattern, because their segments may be longer there. Call before
-  /// OwnLight().
+  /// Lowers PlaneInfo::thin, the extinction below which a voxel counts as thin. This is necessary for rays that
+  /// continue around a periodic axis beyond the planes of their pattern, because their segments may be longer there.
+  /// Call before OwnLight().
   void LetRaysGoOn();
 
 private:

@@ -16,11 +16,11 @@ enum
   RingRows = 4,
   /// Number of coefficients m of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
   MeanLengthTerms = 5,
-  /// Maximum number of bundles that cross a tile (block of rows) in turn, before the first of them crosses the next
-  /// tile; used with angular moments or chained planes
+  /// Maximum number of bundles that cross a tile (block of rows) one after another, before the first of them crosses
+  /// the next tile. Used with angular moments or chained planes
   BundlesTogether = 16,
-  /// Number of rows for which a bundle's sources are stored: the rows on which its stages of crossing a plane (each
-  /// takes every ray through one voxel) work at a time
+  /// Number of rows for which a bundle's sources are stored: the rows on which all stages of crossing a plane work at
+  /// the same time. A stage takes each ray through one voxel
   MomentRows = 8,
   /// Maximum number of planes in a chain, i.e. planes that a bundle crosses together, row by row
   MostChained = 2,
@@ -29,11 +29,11 @@ enum
   /// Rows in a tile of chained planes (planes that a bundle crosses together, row by row); a tile stays in the cache
   /// while all bundles cross it
   RowsOfChain = 32,
-  /// Rows of chained planes held in scratch: a tile, and the rows by which the last stage of crossing a plane (each
-  /// stage takes every ray through one voxel) lags behind the first; a power of two
+  /// Number of rows of a plane that scratch memory holds for chained planes, a power of two: those of a tile, and those
+  /// by which the last stage of the chain lags behind the first stage
   RowsOfChainKept = 64,
-  /// In chained planes (crossed together, row by row), a row of a map (powers of rays) is prefetched this number of
-  /// rows before it is crossed
+  /// In chained planes (crossed together, row by row), rows of a map (powers of rays) are prefetched this number of
+  /// rows ahead
   RowsAhead = 2,
   FloatsOfLine = 16, ///< number of floats in a cache line
   /// Lowest row at which the first stage of crossing a plane begins. If v is periodic, this stage also crosses up to
@@ -47,7 +47,7 @@ enum
 {
   PlaneSigma = 0,
   PlaneInverse = 1,
-  /// Sum over rays of power times mean transmitted length. The sum of power times length, less this sum, is sigma_t
+  /// Sum over rays of power times mean transmitted length. The sum of power times length minus this sum is sigma_t
   /// times the path integral that a unit source causes within its own voxel (numerics.md, Eq. (26))
   PlaneTaken = 2,
   PlaneSource = 3
@@ -76,8 +76,8 @@ enum
 /// plane has at most three stages.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
-/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages and, for
-/// MomentRows rows, the sources and path integrals of all members and the path integral that a unit source causes
+/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages; and for
+/// MomentRows rows the sources and path integrals of all members, and the path integral that a unit source causes
 /// within its own voxel.
 #define BUNDLE_FLOATS(channels, row) \
   ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
@@ -88,27 +88,27 @@ typedef struct
   int map; ///< index of the first float of the bundle's maps (power of its rays)
   /// Index of the bundle's first value in the incident power at faces normal to u, [member (direction)][channel]
   int border;
-  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][row]; a
-  /// member is one direction of the bundle
+  /// Index of the bundle's first float in the rows of rays that enter through faces normal to v,
+  /// [member][channel][row]; a member is one direction of the bundle
   int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
   float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
   float sineU, sineV;
-  /// Mean number of planes between two sideways moves of a ray along u, and along v; at most the number of planes of
+  /// Mean number of planes between two sideways moves of a ray, along u and along v; at most the number of planes of
   /// the axis
   float planesU, planesV;
   /// Per member (direction), the 2 x 2 signed permutation that maps the bundle's moves along its own axes to moves
   /// along u and v of the plane: u from u, u from v, v from u, v from v
   int move[MaxMembers][4];
-  /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
-  /// most four members of the bundle whose directions differ only in signs.
+  /// Number of frames; index of each frame's first member, followed by the end of the last frame. A frame is a set of
+  /// at most four members of the bundle whose directions differ only in signs.
   int frames, firstOfFrame[MaxFrames + 1];
   /// Bit i is set if any angular function of parity i (even or odd along u and v) is not zero in the bundle's
   /// directions (SweepLayout.cl)
   int parities;
-  /// Index of the bundle's first coefficient, for each sense of marching: values of the angular functions for positive
-  /// u and v, [frame (directions that differ only in signs)][function], sorted by parity as FunctionOrder; then the
-  /// angular distributions of beams, [member][beam].
+  /// Index of the bundle's first coefficient, for each sense of marching. Coefficients are the values of the angular
+  /// functions for positive u and v, [frame (directions that differ only in signs)][function], sorted by parity as in
+  /// FunctionOrder; then the angular distributions of beams, [member][beam].
   int coefficients;
 } BundleInfo;
 
@@ -172,8 +172,8 @@ typedef struct
   int first[4], plane[4], along[4];
   /// Index of the first channel's first cell; number of cells from one channel to the next
   ulong firstChannel, stride;
-  /// If `spread`: number of values in the private copy of all cells that each unit of work (rays carried by one
-  /// work-item) has, because units of work run concurrently
+  /// Number of values in a copy of all cells. If `spread` is 1, each unit of work (rays carried by one work-item) has
+  /// its own copy, because units of work run concurrently
   ulong unit;
   int out; ///< 1: the power that leaves through each cell of the box's faces is summed
   /// 1: the escaped power of a ray is spread over all face cells through which light represented by the ray leaves;
@@ -197,8 +197,8 @@ typedef struct
 typedef struct
 {
   ulong sigmaFirst; ///< index of the first channel's first value in sigma_t
-  /// `first`: index of the first channel's first value in source and path; in the flux it is three times, in the
-  /// partial currents six times this index. `stride`: floats from one channel to the next.
+  /// `first`: index of the first channel's first value in source and path. The index in the flux is three times this
+  /// number, and that in the partial currents six times. `stride`: floats from one channel to the next.
   ulong first, stride;
   EachWay eachWay;
   int empty;  ///< 1: the maps (powers of rays) are uninitialised, and are cleared where rays start
@@ -246,8 +246,8 @@ typedef struct
 SHARED_END
 
 #ifdef __OPENCL_C_VERSION__
-// Sideways move of the rays of one member (direction) of a bundle before a stage of crossing a plane (each stage takes
-// them through one voxel), voxels along u and v.
+// Sideways move, in voxels along u and v, of the rays of one member (direction) of a bundle before a stage of crossing
+// a plane. A stage takes the rays through one voxel.
 static inline int2 move_of(
   const __global BundleInfo* bundle, int member, const __global CrossingInfo* crossing, int stage)
 {

@@ -21,9 +21,9 @@ struct ChannelGroup
   int count = 1;
 };
 
-/// Memory layout of arrays over voxels on the device: [channel][voxel], voxels x fastest, with Stride() floats per
-/// channel: the voxel count rounded up to whole vectors; the padding is zero. Buffers are SweepPadding floats longer,
-/// so that a full vector may be read from any position in them.
+/// Memory layout of arrays over voxels on the device: [channel][voxel], x fastest, with Stride() floats per channel.
+/// This is the number of voxels, rounded up to whole vectors; the padding is zero. Buffers are SweepPadding floats
+/// longer, so that a full vector may be read from any position in them.
 struct VolumeLayout
 {
   Grid grid;

@@ -62,8 +62,9 @@ private:
   bool AllAlike = true;
 };
 
-/// Sweeps once along a quadrature that may differ from that of the scattered light, in batches of directions whose rays
-/// fit into memory. Adds to the volume's deposit. Collective if the domain is divided into blocks.
+/// Sweeps once along the directions of a quadrature that may differ from that of the scattered light. Sweeps in batches
+/// of directions whose rays fit into memory. Adds to the volume's deposit. Collective if the domain is divided into
+/// blocks.
 /// @param isLit  whether a direction carries any light
 /// @param source  W / (length^3 sr), as for SweepOperator, with its angular moments in the volume's basis if there is
 ///   one; null: no emission

@@ -10,8 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Peaks are sought among the brightest pixels of each cell (the pixels nearest to one quadrature direction), in this
-/// fraction of the cell's solid angle
+/// Peaks are sought in the brightest pixels of each cell (the pixels nearest to one quadrature direction). These pixels
+/// cover this fraction of the cell's solid angle
 constexpr double BrightPart = 0.05;
 /// A peak's radiance exceeds this multiple of the mean radiance in the rest of its cell (the pixels nearest to one
 /// quadrature direction)

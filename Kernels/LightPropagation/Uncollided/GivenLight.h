@@ -40,12 +40,12 @@ private:
   const TruncatedScattering& Scattering;
 };
 
-/// Energy balance of the image's light: power that the medium removes and power that escapes, for `channels` channels
-/// from `first` on, W. The faces through which the light entered are unknown, so all light is counted as incident on
-/// face 0 (-x).
+/// Energy balance of the image's light: power that the medium removes, and power that escapes, W, for `channels`
+/// channels from channel `first` on. The faces through which the light entered are unknown, so all light is counted as
+/// incident on face 0 (-x).
 SweepTally TallyOf(const UncollidedImage& image, const Medium& medium, int first, int channels);
 
-/// Value of the argument `peak` of AddNarrowMoments() that reduces the moments of light along one direction just enough
+/// Value for the argument `peak` of AddNarrowMoments(). It reduces the moments of light along one direction just enough
 /// that the truncated series is nowhere negative. The value is exp(-2 s) for the smallest s at which the series with
 /// moments exp(-s l (l + 1)), l up to `degree`, is nowhere negative.
 double SmoothPeak(int degree);

@@ -12,8 +12,8 @@
 // basis    coefficients of the angular functions, [function][harmonic], AngularBasis.h
 // path     W length, [channel][voxel]
 // flux     net flux of the same light, W length, [channel][x, y, z][voxel]
-// moments  W length, with angular moments (MomentPlacesShared.h), added to
-// peak     1: moments as the net flux implies; below 1: moments of degree l are multiplied by peak^(l (l + 1) / 2 - 1)
+// moments  W length, with angular moments (MomentPlacesShared.h); the kernel adds to it
+// peak     1: moments follow from the net flux; below 1: moments of degree l are multiplied by peak^(l (l + 1) / 2 - 1)
 __kernel void add_narrow_moments(MomentPlaces places, const __global float* basis, const __global float* path,
   const __global float* flux, __global float* moments, ulong stride, float peak)
 {

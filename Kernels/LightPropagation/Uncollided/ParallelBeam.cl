@@ -18,7 +18,7 @@ static float distance_to_face(float tau)
 //                          Sweep/SweepOperator.h)
 // beyond                   power that enters voxels beyond a block's faces, W
 // channel                  index of this group's first channel in `beyond`
-// all_path, first_moments  arrays of the deposit, added to
+// all_path, first_moments  arrays of the deposit, to which the kernel adds
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, const __global float* beyond, ulong channel, __global float* all_path,
   __global float* first_moments, ulong first, ulong stride)

@@ -53,7 +53,7 @@ public:
 };
 
 /// Calls `add` for each group of channels that share one sigma_t.
-/// @param add  (volume of the group's channels, first channel, monitor) -> tally
+/// @param add  function (volume of the group's channels, first channel, monitor) that returns a tally
 /// @return the sum of the tallies
 template <class AddGroup>
 SweepTally AddByGroups(const UncollidedVolume& volume, const Monitor& monitor, const AddGroup& add)

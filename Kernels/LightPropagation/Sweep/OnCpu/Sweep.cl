@@ -1,7 +1,7 @@
 // Kernel that carries rays through a range of planes, on a CPU. A work-item carries the rays of its unit of work (one
-// sense of marching, some or all bundles) and adds to the volume's sums directly. Units of work in the same launch
-// never share a plane, so there are no races and the order of summation is fixed. The host defines the options of
-// SweepLayout.cl.
+// sense of marching, some or all bundles) and adds their deposits to the volume's arrays directly. Units of work in the
+// same launch never share a plane, so there are no races and the order of summation is fixed. The host defines the
+// options of SweepLayout.cl.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -25,7 +25,8 @@ static void go_to_plane(sweep_state* state, int k)
 
 #if OCTANT_SOURCE
 // Returns the quadrants of the (u, v) plane (WaysAside) that contain a direction (member) of a bundle. A direction with
-// no component along u or v is on the border of two quadrants; for others both results are equal.
+// no component along u or v is on the border of two quadrants. For all other directions, both results are the same
+// quadrant.
 static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 {
   const float2 signs = signs_of(bundle, m);
@@ -51,7 +52,7 @@ static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 
-// Arrays of the volume that a work-item sweeps: the arguments of the kernel `sweep` with the same names, advanced to
+// Arrays of the volume that a work-item sweeps: the arguments of the kernel `sweep` with the same names. They point to
 // the first of the channels that are swept together.
 typedef struct
 {
@@ -65,8 +66,8 @@ typedef struct
   int backward;
 } swept_volume;
 
-// Arguments of the kernel `sweep` that describe rays, advanced to a work-item's sense of marching: maps (power of each
-// ray), incident power, bundles and sideways moves.
+// Arguments of the kernel `sweep` that describe rays: maps (power of each ray), incident power, bundles and sideways
+// moves. They point to the values for the work-item's sense of marching.
 typedef struct
 {
   __global float* maps;
@@ -97,7 +98,7 @@ typedef struct
   const __global OwnLightInfo* own;
 } packed_planes;
 
-// Determines the flag words (IS_THIN, IS_FILLED) of rows of a packed plane.
+// Determines the flag words (IS_THIN, IS_FILLED) of rows [rows.x, rows.y) of a packed plane.
 static BY_ROW void find_words(const SweepInfo* info, const __global float* plane, int2 rows, __global int* words)
 {
   const PlaneInfo* layout = &info->planes;
@@ -176,9 +177,9 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 
 #if !ANGULAR
 // Adds to a row the path integral of emitted and scattered light within the voxel where it starts (numerics.md, Eq.
-// (26)): source times (length - taken) / sigma_t, where `length` and `taken` are sums over rays of power times path
-// length and of power times mean transmitted length. In optically thin voxels, where the subtraction would lose all
-// digits and `taken` is not stored, a polynomial is used instead.
+// (26)): source times (length - taken) / sigma_t. Here `length` is the sum over rays of power times path length, and
+// `taken` is the sum over rays of power times mean transmitted length. In optically thin voxels, where the subtraction
+// would lose all digits and `taken` is not stored, a polynomial is used instead.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < layout->width; at += REAL_WIDTH)
@@ -270,9 +271,9 @@ static void cross_planes(sweep_state* state, int planes, const swept_rays* rays,
 #undef CROSS
 }
 
-// Carries the rays of `count` bundles, from bundle `first` on, through a chain, i.e. planes that each bundle crosses
-// together, row by row. If the planes hold moments, or are large, all bundles cross one tile (a block of rows) before
-// any bundle crosses the next tile, so that the tile stays in the cache.
+// Carries the rays of `count` bundles, from bundle `first` on, row by row through a chain, i.e. planes that each bundle
+// crosses together. If the planes hold moments, or are large, all bundles cross one tile (a block of rows) before any
+// bundle crosses the next tile, so that the tile stays in the cache.
 // @param planes  number of planes; 1 if CHAINED is 0
 // @param packed  the planes; if KEPT_ROWS is not 0, this function packs their rows tile by tile, and `count` must be
 //   the number of all bundles
@@ -321,9 +322,9 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
   state->ring = kept;
 }
 
-// For streamed volumes, moves the pointers of the volume to a slot: one of the device buffers that each hold a slice of
-// the volume (SliceStream.h). The steps between voxels in PlaneInfo are those of a slot, slot.x is the slot's number,
-// and slot.y is the index in the box of the slot's first plane.
+// For streamed volumes: moves the pointers of the volume to a slot, one of the device buffers that each hold a slice of
+// the volume (SliceStream.h). The steps between voxels in PlaneInfo are already those of a slot.
+// @param slot  x: number of the slot; y: index in the box of the slot's first plane
 static void go_to_slot(SweepInfo* info, int2 slot, swept_volume* volume)
 {
   info->planes.firstP = -slot.y;
@@ -395,8 +396,8 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
 #endif
 }
 
-// Number of bundles that cross a tile (block of rows) in turn before the first of them crosses the next tile. Further
-// bundles cross the planes afterwards.
+// Number of bundles that cross a tile (block of rows) one after another before the first of them crosses the next tile.
+// Further bundles cross the planes afterwards.
 static int bundles_together(const sweep_state* state, int bundles)
 {
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;
@@ -529,7 +530,7 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
   return part;
 }
 
-// Number of planes, from plane `begin` on, to pack (copy to scratch memory) together. They end before plane `end` and
+// Number of planes to pack (copy to scratch memory) together, from plane `begin` on. They end before plane `end` and
 // before the end of the lap (passage through all planes of a periodic axis) that began at plane `lap`. Planes are
 // counted from where rays start.
 static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
@@ -585,17 +586,19 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
 // path      path integrals, W length, with their angular moments; the kernel adds to them
 // lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the marching axis
 // flux      net flux, W length, [channel][x, y, z][voxel]; the kernel adds to it
-// currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][voxel], added to
+// currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][voxel]; the kernel adds
+//           to it
 // maps      power of each ray, W, for both senses of marching (or for the only one)
-// border    power of incident rays, W: rows that enter through the faces normal to v, for both senses of marching; then
-//           values for the faces normal to u, for both senses
+// border    power of incident rays, W: first rows of rays that enter through the faces normal to v, for both senses of
+//           marching; then values for the faces normal to u, for both senses
 // coefficients  values of the angular functions in the directions of the bundles (BundleInfo::coefficients), for both
 //               senses
 // crossings  sideways moves and segment lengths, [plane of the ray pattern][bundle]
 // own       path integrals that a unit source in a voxel causes within that voxel, [unit][plane,
 //           counted from where rays start]
 // schedule  first plane and end, counted from where rays start, [launch][unit]; planes beyond the last plane wrap
-//           around; if streamed [launch][planes, slots][unit], where slots are those of go_to_slot()
+//           around; if the volume is streamed, [launch][planes, slots][unit], with the argument `slot` of go_to_slot()
+//           for each unit
 // tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
 // entering  if SIDES: power of the rays that enter through the sides (SweepSides.cl); else, if FaceInfo::in, incident
 //           radiance per cell of the box's faces (SweepRequest::faceIn)
@@ -646,7 +649,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   struct plane_place places[PLANES_TOGETHER];
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
-    // Number of planes crossed in earlier laps around a periodic axis.
+    // Index of the plane, counted from where rays start, at which the current lap around a periodic axis began.
     const int lap = begin / info.planes.sizeP * info.planes.sizeP;
     count = planes_to_pack(&info, begin, range.y, lap, way);
     const packed_planes packed = { parts.planes, parts.words,

@@ -1,9 +1,10 @@
 // Functions that carry the rays of one bundle through one plane. A bundle is a set of directions (members) that are
-// mirror images of each other. Compiled once for each number of MEMBERS.
+// mirror images of each other. This file is compiled once for each number of MEMBERS.
 //
-// A plane is crossed in up to three stages, one per segment. Between two stages all rays of the map move by one voxel
-// or none. The move costs only an offset in the load. The stages process rows one after another, each stage LAG rows
-// behind the previous stage, so that intermediate rows stay in the cache; the last stage writes the map in place.
+// A plane is crossed in up to three stages, one per segment. Between two stages all rays of the map move sideways by
+// one voxel, or stay. A move costs only an offset of the address from which rays are loaded. The stages process rows
+// one after another, each stage LAG rows behind the previous stage, so that intermediate rows stay in the cache; the
+// last stage writes the map in place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
@@ -59,7 +60,7 @@ typedef struct
 typedef struct
 {
   float alongU[MEMBERS], alongV[MEMBERS]; // components along u and v, for the net flux
-  // The two combinations of senses along u and v to which each direction belongs (ways_aside())
+  // The two quadrants of the (u, v) plane to which each direction belongs (ways_aside())
   int2 aside[MEMBERS];
 } MEMBER_WAYS;
 
@@ -103,7 +104,8 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
     return;
   }
 #if OCTANT_SOURCE
-  // The path integral is reduced by the power that the octant source adds to the rays, so that total power is conserved
+  // The octant source adds power to the rays. The path integral is reduced accordingly, so that total power is
+  // conserved
   sum -= all_more * load_real(x, rows->inverse) * rows->power;
 #endif
   __global float* path = rows->path + c * ROW;
@@ -118,11 +120,10 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
 }
 
 // Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al. 2012, Eq. 3, in
-// conservative form). With P the power of a ray before the segment, P' behind it, p1 the mean transmitted length, q the
-// source, and `power` the power of a ray at radiance 1:
-//   path += p1 P,  P' = P - sigma p1 P + power q p1
-// Light of the source also has a path within the voxel where it starts. That path does not depend on P and is added by
-// add_own_light in Sweep.cl.
+// conservative form). P is the power of a ray before the segment, P' its power behind it, p1 the mean transmitted
+// length, q the source, and `power` the power of a ray at radiance 1: path += p1 P,  P' = P - sigma p1 P + power q p1
+// Light of the source also has a path integral within the voxel where it starts. It does not depend on P, and is added
+// by add_own_light in Sweep.cl.
 // @param entered  rows of the power that enters the plane's voxels, W, [channel][CurrentFaces]; null if not computed
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle,
@@ -201,10 +202,10 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   }
 }
 
-// Adds the power of the rays that leave the box from row y in a move of (du, dv) to the escaped power. `row` holds the
-// rays; the fraction `part` of their power moves. Of rays that move along u and v at once, half cross along u first and
-// half along v first. At the box's edge, half of their power therefore leaves through each of the two faces, and half
-// of the light incident next to the edge leaves again without crossing a voxel.
+// Adds the power of the rays that leave the box from row y in a move of (du, dv) voxels to the escaped power. `row`
+// holds the rays; the fraction `part` of their power moves. Of rays that move along u and v at once, half cross along u
+// first and half along v first. At the box's edge, half of their power therefore leaves through each of the two faces,
+// and half of the light incident next to the edge leaves again without crossing a voxel.
 // across_u, across_v  power of the rays that enter through the faces normal to u and v, W, without light given per
 //                     cell: across_u is [member][channel], across_v a row of rays
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
@@ -264,8 +265,8 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
   }
 }
 
-// Mixes the rays of a row in a move that only the fraction `part` of each ray's power makes (numerics.md, Eq. (22)):
-// `in` points to the rays that arrive, `own` to the rays that stay.
+// Moves the fraction `part` of the power of each ray in a row (numerics.md, Eq. (22)). The result is a mean of the rays
+// that arrive, `in`, weighted by `part`, and the rays that were there before, `own`. `in` then points to the result.
 static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -285,8 +286,8 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
   }
 }
 
-// Writes the power of the rays that enter through the faces normal to u to the columns at both ends of every row in the
-// ring buffers, which hold the rows of rays between one stage (crossing of one voxel) and the next.
+// Fills the columns at both ends of every row in the ring buffers with the power of the rays that enter through the
+// faces normal to u. Ring buffers hold the rows of rays between one stage (crossing of one voxel) and the next.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -404,9 +405,10 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __glob
   }
 }
 
-// Points `in` to the row from which a stage reads the rays of each member. Tallies the rays that leave the box.
-// @param own  row y after the previous stage; null: this is the first stage, which reads rays from the map and does not
-// move them
+// Sets `in` to the row from which a stage reads the rays of each member (direction). Tallies the power of the rays that
+// leave the box.
+// @param own  rays of row y after the previous stage; null: this is the first stage, which reads rays from the map and
+// does not move them
 static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __global float* map,
   const __global float* ring, const __global float* own, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
@@ -443,8 +445,8 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
   }
 }
 
-// Writes the power of the rays that enter through the faces normal to u before stage s of a plane to the columns beside
-// a row.
+// Fills the columns beside a row with the power of the rays that enter through the faces normal to u before stage s of
+// a plane.
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {

@@ -6,8 +6,9 @@
 #include "Numerics/Prefetch.cl"
 
 // Effect of a segment on rays of power P with a source q: path += p1 P, P' = P - sigma p1 P + power q p1, with the mean
-// transmitted length p1 = (1 - exp(-tau)) / sigma (numerics.md, Eqs. (23), (24)). It is computed as P' = P keep + P
-// change + power q p1, without cancellation: for small tau P minus the loss, for large tau P times the transmittance.
+// transmitted length p1 = (1 - exp(-tau)) / sigma (numerics.md, Eqs. (23), (24)). P' is computed as P keep + P change +
+// power q p1, which avoids cancellation: for small tau this is P minus the loss, for large tau P times the
+// transmittance.
 typedef struct
 {
   real tau;
@@ -77,7 +78,8 @@ static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* sta
   state->asked += state->asks * FloatsOfLine;
 }
 
-// Selects the part of row y of a map (of `floats` floats per row) that stage g of `stages` is to prefetch; y < 0: none.
+// Selects the part of row y of a map that stage g of `stages` stages is to prefetch; y < 0: nothing. A row has `floats`
+// floats.
 static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
 {
   state->asks = 0;

@@ -14,8 +14,8 @@ public:
   SweepKernel(Device& device, const SweepPlan& plan);
 
   /// Sets the incident light that is uniform over each face parallel to the marching axis.
-  /// @param outside, radiance  power of the rays that enter through the faces normal to v, and normal to u, W, in the
-  ///   layout of SweepBorder
+  /// @param outside, radiance  power of the rays that enter through the faces normal to v (outside) and normal to u
+  ///   (radiance), W, in the layout of SweepBorder
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }

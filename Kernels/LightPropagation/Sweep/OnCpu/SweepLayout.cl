@@ -9,14 +9,14 @@
 //   PERIODIC  1: the box may be periodic along u or v; SweepInfo tells along which
 //   FACES     1: escaped power may be summed, and incident radiance given, per cell of the box's faces (SweepSides.cl);
 //             FaceInfo tells which
-//   ROWS_KEPT  number of rows that are kept in scratch memory of chained planes, i.e. planes that a bundle crosses
-//              together; a power of two; 0: all rows
+//   ROWS_KEPT  number of rows of a plane that scratch memory holds at a time, a power of two; 0: all rows. Only for
+//              chained planes, i.e. planes that a bundle crosses together
 //   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
 // A program takes seconds to compile. Options whose test at run time costs little are therefore members of SweepInfo,
 // so that sweeps of incident light and of scattered light share one program.
 //
 // Rays carry power (W), so escaped power is a plain sum over rays at every face. A row of a map holds the power of the
-// rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
+// rays that enter a row of voxels, for all directions (members) of a bundle and all channels: float
 // [member][channel][row].
 
 #pragma once
@@ -42,8 +42,8 @@
 #define PLANE_CURRENTS (PLANE_OCTANTS + (OCTANT_SOURCE ? WaysAside : 0) * CHANNELS)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
-// Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. This is impossible if rays
-// that enter or leave sideways are stored for each plane, or if rows wrap around a periodic axis.
+// Whether a bundle may cross several planes (up to PLANES_CHAINED) together, row by row, as a chain. This is impossible
+// if rays that enter or leave sideways are stored for each plane, or if rows wrap around a periodic axis.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
 // BY_ROW is the attribute of functions that are called at most once per row. They are not inlined, because inlining in
 // unrolled loops makes compilation a third slower. If planes may be chained, they may be inlined, because calls would
@@ -76,8 +76,8 @@
 // Maximum number of planes that a bundle crosses together, as a chain.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
-// Maximum number of rows by which the last stage of a chain (`planes` planes that a bundle crosses together) lags
-// behind the first stage
+// Maximum number of rows by which the last stage of a chain lags behind the first stage. A chain is `planes` planes
+// that a bundle crosses together.
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {
@@ -90,8 +90,8 @@ typedef struct
 } chain_of_stages;
 
 // Flag word of a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin. Bits 1 to
-// SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source; always set if
-// SweepInfo::skips is 0.
+// SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source. These bits are always set
+// if SweepInfo::skips is 0.
 #define SEGMENTS 30
 #define IS_THIN(word) (((word)&1) == 0)
 #define IS_FILLED(word, x, bits) ((word) >> (1 + ((x) >> (bits))) & 1)
@@ -122,8 +122,8 @@ static int segment_bits(int width)
   return bits;
 }
 
-// Compile-time check: the kept rows must hold one tile (block of rows that all bundles cross in turn) and the rows by
-// which the last stage of crossing lags behind the first stage.
+// Compile-time check of the number of rows in scratch memory: there must be room for one tile (block of rows that all
+// bundles cross one after another) and for the rows by which the last stage of a chain lags behind the first stage.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
 // A plane that is being crossed: its packed quantities, flag words of its rows (IS_THIN, IS_FILLED) and escaped power.
@@ -163,13 +163,14 @@ typedef struct
   __global float* paths; // path integrals of the bundle's directions, W length, laid out as sources
   // Path integral that a unit source in a voxel causes within that voxel, MomentRows rows.
   __global float* ownPath;
-  // Moments, from the second function on, of the plane's source and of its path integral; number of floats from one row
-  // to the next, and from one channel to the next.
+  // Angular moments of the plane's source and of its path integral, without the moment of the first function; number of
+  // floats from one row of moments to the next, and from one channel to the next.
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
-  // Number of angular functions; index of each function's moment in a group of moments (MomentPlacesShared.h), sorted
-  // by the function's parity along u and v: even-even, odd-even, even-odd, odd-odd; and the end of each parity's range.
+  // Number of angular functions; for each function the index of its moment in a group of moments
+  // (MomentPlacesShared.h); end of each parity's range in this list. The functions are sorted by parity along u and v:
+  // even-even, odd-even, even-odd, odd-odd.
   int functions;
   const __global int* functionPlaces;
   int parityEnds[4];
@@ -179,7 +180,7 @@ typedef struct
   float (*rounding)[CHANNELS];
 #if FACES
   const FaceInfo* faces;
-  // Index of the first cell, in the first channel, of the plane that is being crossed, for each of -u, +u, -v, +v
+  // For each of the faces -u, +u, -v, +v: index of the first cell that adjoins the current plane, in the first channel
   ulong faceFirst[4];
   int firstPlane;            // index in the grid of the first plane of the box
   __global exact* faceOut;   // escaped power per cell of the box's faces, W, to which the work-item adds

@@ -11,8 +11,8 @@ static ulong row_of_maps(const MapsInfo* info, const __global BundleInfo* bundle
   return way * info->eachWay + bundle->map + (ulong)row * bundle->members * info->channels * info->row + info->border;
 }
 
-// Sums the power of the rays in the maps, W, which escapes at the far end of an open axis. One work-item per row of a
-// bundle and sense of marching.
+// Sums the power of the rays in the maps, W. On an open axis this power escapes at the far end. One work-item per row
+// of a bundle and sense of marching.
 // sums     [sense][bundle][row][channel]
 __kernel void map_power(
   MapsInfo info, const __global float* maps, const __global BundleInfo* bundles, __global float* sums)
@@ -60,7 +60,7 @@ __kernel void darken_beside(MapsInfo info, __global float* maps, const __global 
 
 // For open axes: adds the power of rays that leave at the far end to the cells of that face. One work-item per row of
 // the face and sense of marching.
-// face_out  escaped power summed by this sweep, W, [channel][cell], added to
+// face_out  escaped power summed by this sweep, W, [channel][cell]; the kernel adds to it
 __kernel void leave_by_cells(
   MapsInfo info, const __global float* maps, const __global BundleInfo* bundles, __global exact* face_out)
 {
@@ -81,8 +81,8 @@ __kernel void leave_by_cells(
   }
 }
 
-// Adds the escaped power per cell that the work-items of `sweep` summed separately, in their order, to face_out, and
-// clears their values. One work-item per value.
+// Adds the escaped power per cell to face_out. The work-items of `sweep` have summed it separately; their sums are
+// added in the order of the work-items, and then cleared. One work-item per value.
 __kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);
@@ -95,8 +95,8 @@ __kernel void take_face_cells(__global exact* units, int count, ulong values, __
   face_out[i] = (float)(face_out[i] + sum);
 }
 
-// Adds the light incident per cell of the faces where rays start to the maps. One work-item per row of a bundle and
-// sense of marching.
+// Adds to the maps the light that is incident through each cell of the faces where rays start. One work-item per row of
+// a bundle and sense of marching.
 // face_in  incident radiance, W / (length^2 sr), [channel][cell]
 __kernel void enter_by_cells(
   MapsInfo info, __global float* maps, const __global BundleInfo* bundles, const __global float* face_in)

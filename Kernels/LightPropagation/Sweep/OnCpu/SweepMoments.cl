@@ -12,9 +12,9 @@
 // eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
-// OF_ALL_PARITIES(MACRO) runs MACRO(parity) for all angular functions from the second on, one parity after another. It
-// skips parities whose functions are zero in all of the bundle's directions. BEGIN_PARITIES loads the values needed
-// into registers.
+// OF_ALL_PARITIES(MACRO) runs MACRO(parity) for one parity after another, and so covers all angular functions from the
+// second on. It skips parities whose functions are zero in all of the bundle's directions. BEGIN_PARITIES loads the
+// necessary values into registers.
 #define BEGIN_PARITIES                                                  \
   const int functions = state->functions, parities = bundle->parities;  \
   const int end_0 = state->parityEnds[0], end_1 = state->parityEnds[1]; \

@@ -35,7 +35,7 @@ static void transpose(real* rows)
   }
 }
 
-// Index in the volume of voxel (u, v) of a plane of the box.
+// Index, in the arrays of the volume, of voxel (u, v) of a plane of the box.
 static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 {
   return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
@@ -84,8 +84,8 @@ static inline __attribute__((always_inline)) void pack_block(
   }
 }
 
-// Copies one quantity, for rows [rows.x, rows.y) of planes [first, first + count), to scratch, padded with zeros. May
-// read, but does not use, up to a vector beyond the last voxel.
+// Copies one quantity, for rows [rows.x, rows.y) of planes [first, first + count), to scratch, padded with zeros. Reads
+// up to one vector beyond the last voxel, but does not use it.
 static BY_ROW void pack(
   const PlaneInfo* layout, __global float* to, int first, int count, int2 rows, const __global float* volume)
 {
@@ -199,8 +199,8 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
 }
 
 #if ANGULAR
-// Index in the volume's array of the moments (from the second angular function on) of voxel (u, v) in a channel, for
-// planes along x from `first` on, all of which must be in one group of MomentGroup voxels.
+// Index in the volume's array of the first of the moments of voxel (u, v) in a channel, from the second angular
+// function on. The planes are normal to x, and those from `first` on must be in one group of MomentGroup voxels.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
@@ -211,14 +211,15 @@ static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int fi
     IN_ROW(layout->firstP + first, higher);
 }
 
-// Index in a packed plane of the moments (from the second angular function on) of voxel (u, v) in a channel.
+// Index in a packed plane of the first of the moments of voxel (u, v) in a channel, from the second angular function
+// on.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
-// Number of planes perpendicular to x, from plane `next` on in marching order, whose moments are in the same group of
-// MomentGroup voxels along x.
+// Number of planes, from plane `next` on in marching order, whose moments are in the same group of MomentGroup voxels
+// along x. The planes are normal to x.
 static int of_one_group(const PlaneInfo* layout, int next, int backward)
 {
   const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);

@@ -29,9 +29,10 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
   add_currents(state, y, face, &rays, 1, part);
 }
 
-// Adds the fraction `part` of the diagonal rays of row y to the partial currents of the voxels through which they pass
-// on their way. A ray that arrives at column x passes through column x - du of row y, which it enters through `face`, a
-// face normal to v. It then enters column x through the face normal to u, or leaves the box.
+// Adds the fraction `part` of the diagonal rays of row y to the partial currents of the voxels that they pass between
+// leaving one voxel and entering the next. A ray that arrives at column x passes through column x - du of row y, which
+// it enters through `face`, a face normal to v. It then enters column x through the face normal to u, or leaves the
+// box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;

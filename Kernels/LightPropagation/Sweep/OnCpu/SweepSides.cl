@@ -5,10 +5,10 @@
 //   FACES  1: escaped power may be summed, and incident radiance given, per cell of the box's faces; FaceInfo tells
 //          which
 //
-// Memory layout of the power of rays exchanged with neighbours: [plane][ray][SIDE_FLOATS], for each ray at the voxel
-// from which it moves. First come the rays that cross the face normal to v, one per column, then the rays that cross
-// the face normal to u, one per row, and last the ray that crosses both faces at once. Incoming rays move from voxels
-// just outside the box, outgoing rays from its outermost columns and rows. Rays are in the order
+// Memory layout of the power of rays exchanged with neighbours: [plane][ray][SIDE_FLOATS]. The power of a ray is stored
+// for the voxel from which it moves. First come the rays that cross the face normal to v, one per column, then the rays
+// that cross the face normal to u, one per row, and last the ray that crosses both faces at once. Incoming rays move
+// from voxels just outside the box, outgoing rays from its outermost columns and rows. Rays are in the order
 // [bundle][member][channel].
 
 #pragma once
@@ -35,8 +35,8 @@ static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* 
   }
 }
 
-// Copies the power of the rays of one direction (member) of a bundle that enter row y through the face normal to u in a
-// move of `du` to the column beside that row.
+// Fills the column beside row y with the power of the rays that enter this row through the face normal to u, for one
+// direction (member) of a bundle. `du` is the move by which they enter.
 static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
@@ -47,8 +47,8 @@ static BY_ROW void take_across_u(
   }
 }
 
-// Writes the power of the rays of one direction (member) of a bundle that leave the box from row y in a move of (du,
-// dv) to state->sidesOut, for the neighbouring blocks.
+// Writes to state->sidesOut, for the neighbouring blocks, the power of the rays that leave the box from row y in a move
+// of (du, dv), for one direction (member) of a bundle.
 static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
@@ -74,13 +74,13 @@ static BY_ROW void give_sides(
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Index, in the cells of the box's faces, of cell i of a side: the cell at row i (sides normal to u) or column i (sides
-// normal to v) of the plane that is crossed.
+// Index of cell i of a side among the cells of the box's faces, for the plane that is crossed. Cell i is in row i of
+// the plane (sides normal to u) or in column i (sides normal to v).
 #if FACES
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
-// Sets the indices of the first cells of the four sides to those of plane `plane` of the grid.
+// Sets faceFirst, the index of the first cell of each of the four sides, for plane `plane` of the grid.
 static BY_ROW void go_to_faces(sweep_state* state, int plane)
 {
   for (int side = 0; side < 4; ++side)
@@ -97,7 +97,7 @@ typedef struct
   float begin, end;
 } face_planes;
 
-// Range of planes through whose cells a ray leaves, for a ray that moves sideways in the current plane.
+// Range of planes through whose cells the power of a ray leaves that moves sideways in the current plane.
 // @param planes  number of planes from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
@@ -154,8 +154,8 @@ static float light_of_cell(const sweep_state* state, int side, int i, int c)
   return state->faceIn[FACE_CELL(state, side, i, c)];
 }
 
-// Mean incident radiance of cells i and i + move, or of cell i alone if the other one is not on the face. Half of the
-// rays that move along u and v at once pass through each cell.
+// Mean incident radiance of cells i and i + move, or of cell i alone if the other one is not on the face. Of the rays
+// that move along u and v at once, half pass through each of the two cells.
 static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;

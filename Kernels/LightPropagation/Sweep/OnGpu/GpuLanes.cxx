@@ -76,8 +76,8 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   }
 }
 
-/// Appends a plan's bundles (sets of symmetric directions) and their moves and segments in each plane (`crossings`) to
-/// those laid out so far, and adds a lane (the rays that march in one sense along the axis) for each sense of marching.
+/// Appends a plan's bundles (sets of symmetric directions) to `bundles`, and the moves and segments of their rays in
+/// each plane to `crossings`. Adds a lane (the rays that march in one sense along the axis) for each sense of marching.
 void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 {
   const int firstBundle = static_cast<int>(this->bundles.size());

@@ -15,7 +15,7 @@ namespace tyndall
 /// @param way  sense of marching: 0 forward along the axis, 1 backward
 SweepLane LaneOf(const SweepPlan& plan, int way);
 
-/// Number of floats per ray and plane in the arrays of the rays that enter or leave a lane's planes sideways
+/// Number of floats per ray and plane in the arrays that hold the rays which enter or leave a lane's planes sideways
 /// (LanePlane.cl).
 std::size_t SideFloats(const SweepLane& lane);
 
@@ -23,8 +23,8 @@ std::size_t SideFloats(const SweepLane& lane);
 /// march in one sense (`way`, 0 forward, 1 backward): [ray][function, then beam].
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
 
-/// Batch of lanes (each the rays of one sense along an axis) that cross planes in the same launches: lanes of open
-/// axes, or both senses along one periodic axis.
+/// Batch of lanes (each the rays of one sense along an axis) that cross planes in the same launches: some lanes of open
+/// axes, or both lanes of one periodic axis.
 struct LaneBatch
 {
   int first = 0, count = 0; ///< index of the first lane, and number of lanes
@@ -56,10 +56,10 @@ struct GpuLanes
   std::vector<CrossingInfo> crossings;
   /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
   std::vector<float> functions;
-  /// Per lane: index at which LanePowers stores the lane's sums over rows of rays behind the last plane,
-  /// [ray][channel][v]
+  /// For each lane: index at which LanePowers stores the power of the lane's rays behind the last plane, summed over
+  /// each row, [ray][channel][v]
   std::vector<std::size_t> ends;
-  /// Per lane: index at which LanePowers stores the lane's sums of the power that escapes sideways,
+  /// For each lane: index at which LanePowers stores the lane's power that escapes sideways, summed over each side,
   /// [plane][side][channel]
   std::vector<std::size_t> sides;
   std::size_t endRows = 0, sideRows = 0;
@@ -68,11 +68,11 @@ struct GpuLanes
   int channels;            ///< number of channels swept together
   int functionCount;       ///< number of angular functions; 1: fluence only
   int floatsOfDeposit;     ///< number of floats that a lane writes per voxel and channel
-  /// Number of floats of the largest maps (power of each ray) of any batch: among batches of open axes, and of periodic
-  /// axes
+  /// Number of floats of the largest maps (power of each ray) that any batch on open axes needs, and that any batch on
+  /// a periodic axis needs
   std::size_t mostMapsOpen = 0, mostMapsAround = 0;
-  /// Maximum number of lanes of any batch: among batches whose lanes have their own output arrays, and among batches on
-  /// a periodic axis
+  /// Largest number of lanes in a batch whose lanes have their own output arrays: among all such batches, and among
+  /// those on a periodic axis
   int mostWithArrays = 0, mostAround = 0;
 
   /// Number of floats of the lanes' own output arrays, which lanes need to run concurrently.

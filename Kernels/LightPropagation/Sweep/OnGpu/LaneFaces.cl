@@ -7,8 +7,8 @@
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
 
-// Cells of the box's faces that adjoin one plane of a lane (the rays that march in one sense along an axis), for one
-// channel.
+// Cells of the box's faces that adjoin one plane of a lane, for one channel. A lane is the rays that march in one sense
+// along an axis.
 typedef struct
 {
   const __global SweepLane* lane;
@@ -41,8 +41,8 @@ static float light_of_cell(const cells_beside* cells, int side, int i)
   return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
 }
 
-// Incident power of a ray, W: `power`, the power of a ray at radiance 1, times the mean radiance of the cells i and i +
-// move of a side (of cell i alone if the other one is not on the face).
+// Incident power of a ray, W: `power`, which is its power at radiance 1, times the mean radiance of the cells i and i +
+// move of a side. If cell i + move is not on the face, the radiance is that of cell i.
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
   if (!cells->faces->in)
@@ -117,7 +117,7 @@ static float part_through(const __global SweepLane* lane, int spread, int plane,
   return part / (end - begin);
 }
 
-// Power of a ray that leaves through cell `i` of a side in a plane, W. At an edge of the plane, half of the power of
+// Power with which a ray leaves a plane through cell `i` of a side, W. At an edge of the plane, half of the power of
 // rays that move along u and v at once leaves through each of the two sides.
 // @param in, out  power of the rays at the sides, for this ray and plane (LanePlane.cl)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
@@ -139,7 +139,7 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
     const bool turns = edges && along != 0;
     const float stays = turns && i == (along > 0 ? size - 1 : 0) ? 0.5f : 1.0f;
     float leaves = stays * out[of_u ? sizeU + i : i];
-    // Power that enters through the adjacent face and leaves through this one without crossing a voxel
+    // Adds power that enters through the adjacent face of the box and leaves through this one without crossing a voxel
     if (turns && i == (along > 0 ? 0 : size - 1))
     {
       const int last = side % 2 ? (of_u ? sizeU : sizeV) - 1 : 0;
@@ -170,11 +170,12 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    // whether the ray crosses this side of the box when it moves along the bundle's own axis u, not v
+    // Whether the ray crosses this side of the box when it moves along the bundle's own axis u; false: along its own
+    // axis v
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
-    // A ray that moves sideways in a plane at most this number of planes away may have power that leaves through this
-    // plane's cells.
+    // A ray may leave through this plane's cells if it moves sideways in a plane that is at most this number of planes
+    // away.
     const int reach = lane->around ? lane->patternPlanes : of_lane->spread ? (int)ceil(0.5f * planes) : 0;
     for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {

@@ -40,11 +40,11 @@ public:
   /// Computes the power of the rays that enter the planes sideways, from the light incident per cell. Call before the
   /// planes are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
-  /// Adds to faceOut the power of the rays that left sideways from the planes just crossed and, on open axes, behind
-  /// the last plane. Adds one lane after another, so that the order of summation does not depend on which lanes run
-  /// concurrently.
-  /// @param maps  power of the rays before planes with even index, counted from where rays start, and before those with
-  /// odd index
+  /// Adds to faceOut the power of the rays that left the planes just crossed sideways and, on open axes, of the rays
+  /// that left behind the last plane. Lanes are added one after another, so that the order of summation does not depend
+  /// on which lanes run concurrently.
+  /// @param maps  power of the rays before planes with even index, and before planes with odd index; planes are counted
+  /// from where rays start
   void Leave(
     const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const;
 

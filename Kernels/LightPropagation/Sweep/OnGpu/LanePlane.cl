@@ -1,9 +1,9 @@
-// Index of the planes that a lane (the rays that march in one sense along an axis) of a sweep on GPUs crosses, and
-// memory layout of the rays at the planes' sides.
+// Index of the planes that a lane crosses in a sweep on GPUs, and memory layout of the rays at the planes' sides. A
+// lane is the rays that march in one sense along an axis.
 //
-// The power of rays that enter or leave through the sides is stored as [plane, counted from where rays
-// start][ray][channel][SIDE_FLOATS]: one float per column of the plane for the rays that cross the face normal to v,
-// one per row for those that cross the face normal to u, and one for the ray that crosses both at once.
+// The power of rays that enter or leave through the sides is stored as [plane][ray][channel][SIDE_FLOATS]; planes are
+// counted from where rays start. SIDE_FLOATS has one float per column of the plane for the rays that cross the face
+// normal to v, one per row for those that cross the face normal to u, and one for the ray that crosses both at once.
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"

@@ -48,7 +48,7 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// Adds the lanes' own arrays of angular moments to `sum`, in the order of the lanes; a lane is the rays of one sense
+// Adds the lanes' own arrays of angular moments to `sum`, in the order of the lanes. A lane is the rays of one sense
 // along an axis. One work-item per voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)

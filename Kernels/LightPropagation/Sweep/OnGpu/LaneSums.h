@@ -7,10 +7,10 @@
 
 namespace tyndall
 {
-/// Output arrays (path integrals, net flux, partial currents) of lanes that run concurrently or wrap around an axis; a
-/// lane is the rays of one sense along an axis. The layout is [lane], then as in Deposit. AddUp() adds the lanes'
-/// arrays to the deposit in the order of the lanes, so results are identical, bit for bit, to those of lanes that add
-/// to the deposit one after another.
+/// Output arrays (path integrals, net flux, partial currents) of lanes that run concurrently, or whose rays wrap around
+/// an axis. A lane is the rays of one sense along an axis. The arrays of a lane have the layout of Deposit; those of
+/// the next lane follow. AddUp() adds the lanes' arrays to the deposit in the order of the lanes, so results are
+/// identical, bit for bit, to those of lanes that add to the deposit one after another.
 class LaneArrays
 {
 public:

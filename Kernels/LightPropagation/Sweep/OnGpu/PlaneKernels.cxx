@@ -8,7 +8,8 @@ namespace tyndall
 {
 namespace
 {
-/// Work-items per group along u, along which voxels are mostly contiguous in memory, and along v.
+/// Work-items per group along u and along v. There are more along u, because voxels that are contiguous in memory are
+/// mostly along u.
 constexpr std::size_t GroupU = 32, GroupV = 4;
 /// Time per ray and voxel, s; only determines how often the host waits
 constexpr double GpuSecondsPerRay = 1e-10;

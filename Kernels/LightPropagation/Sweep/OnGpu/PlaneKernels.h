@@ -13,13 +13,13 @@
 
 namespace tyndall
 {
-/// Streams a volume in host memory for one lane of a sweep on GPUs, i.e. the rays that march in one sense along an
-/// axis: they cross slices of the volume one after another. A slot is a device buffer for one slice; two slots
+/// Streams a volume in host memory for one lane of a sweep on GPUs. A lane is the rays that march in one sense along an
+/// axis; they cross slices of the volume one after another. A slot is a device buffer for one slice; two slots
 /// alternate (numerics.md, section 4.10).
 class LaneSlices
 {
 public:
-  /// Returns null if the volume is not streamed, since it is in device memory or is swept in place
+  /// Returns null if the volume is not streamed because it is in device memory or is swept in place
   /// (SliceStream::Make()). Otherwise changes the memory layout in `lane` to that of a slot, the device buffer for one
   /// slice.
   /// @param plan  the plan of the lane's axis
@@ -53,8 +53,8 @@ struct PlaneRays
   const Buffer<BundleInfo>& bundles;
   const Buffer<CrossingInfo>& crossings;
   const Buffer<cl_float4>& entering;
-  /// Power of the rays, W, before planes with even index, counted from where rays start, and before planes with odd
-  /// index
+  /// Power of the rays, W, before planes with even index, and before planes with odd index; planes are counted from
+  /// where rays start
   std::array<const Buffer<float>*, 2> maps;
   const Buffer<float>&directed,
     &functions; ///< source along each ray, and angular functions; used only with angular moments
@@ -62,9 +62,9 @@ struct PlaneRays
   const Buffer<float>&sidesIn, &sidesOut; ///< power of the rays at the sides, W; used only with SIDES
 };
 
-/// Values of the compiler option SIDES of the plane kernels. Rays that enter and leave through the sides of the box are
-/// not stored; stored because the box is a block (subdomain); or stored because light is given or summed per cell of
-/// the domain's faces.
+/// Values of the compiler option SIDES of the plane kernels. The rays that enter and leave through the sides of the box
+/// are either not stored, or they are stored for one of two reasons: the box is a block (subdomain), or light is given
+/// or summed per cell of the domain's faces.
 enum
 {
   SidesNotStored = 0,

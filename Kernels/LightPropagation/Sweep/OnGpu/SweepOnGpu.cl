@@ -1,4 +1,4 @@
-// Kernels that carry rays through one plane on a GPU: one work-item per voxel of the plane and sense along the axis
+// Kernels that carry rays through one plane on a GPU: one work-item per voxel of the plane and sense of marching
 // (numerics.md, section 4.8). In each of the up to three segments of the plane, a work-item reads the rays that enter
 // its voxel from the maps of the previous plane and recomputes their attenuation in the neighbouring voxels: arithmetic
 // is cheap on a GPU, so rays are read and written once per plane, without synchronisation other than the launch. Only a
@@ -39,7 +39,7 @@ static void put_path(const plane_state* state, __global float* path, __global fl
 }
 
 #if ANGULAR
-// Adds sums->path, the path integral of the last computed ray, to the angular moments, and clears it for the next ray.
+// Adds sums->path, the path integral of one ray, to the angular moments, and clears it for the next ray.
 // @param functions  values of the angular functions in the ray's direction
 static void gather_moments(
   voxel_sums* sums, const member_state* member, const __global float* functions, int shines, ulong plane, ulong here)
@@ -193,7 +193,7 @@ static void put_escaped(
 // source    W / (length^3 sr), [channel][voxel]
 // octants   additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel]
 // path, flux, currents  path integrals and net flux, W length, and power that enters each voxel through each face, W:
-//                       written or, if PlaneLaunch::adds is 1, added to
+//                       the kernel overwrites them or, if PlaneLaunch::adds is 1, adds to them
 // lost      rounding errors of the path, laid out as path, if the marching axis is periodic
 // before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
 // after     power of the rays at the voxel that they enter in the next plane, W, laid out as `before`

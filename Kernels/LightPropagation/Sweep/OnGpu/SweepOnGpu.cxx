@@ -72,7 +72,7 @@ void SweepOnGpu::MakeBuffers()
   }
 }
 
-/// Creates the slices of a volume in host memory. Call after all other buffers on the device have been allocated.
+/// Creates Slices if the volume is in host memory. Call after all other buffers on the device have been allocated.
 void SweepOnGpu::MakeSlices()
 {
   if (!this->TheDevice.Streams())
@@ -145,7 +145,7 @@ SweepOnGpu::Entered SweepOnGpu::EnteredFrom(const SweepBoundary& boundary) const
   return entered;
 }
 
-/// Computes the incident power of each ray, and adds the power by face to the tally.
+/// Computes the incident power of each ray, and sets the incident power of each face in the tally.
 /// @return whether any light is incident
 bool SweepOnGpu::Enter(const SweepBoundary& boundary, int group, SweepTally& tally)
 {
@@ -168,8 +168,8 @@ bool SweepOnGpu::Enter(const SweepBoundary& boundary, int group, SweepTally& tal
   return !std::all_of(tally.in.begin(), tally.in.end(), IsBlack);
 }
 
-/// Carries the rays of a batch (lanes that run concurrently) of open axes from where they start to the end of their
-/// axis.
+/// Carries the rays of a batch (lanes that run concurrently) of open axes from where they start to the ends of the
+/// axes.
 void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   const Crossing how = { volume.source != nullptr, &this->Entering };

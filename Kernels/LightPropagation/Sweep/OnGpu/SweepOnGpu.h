@@ -26,7 +26,7 @@ namespace tyndall
 ///  the ray;
 ///  - if senses run concurrently, path, flux and partial currents of each sense, in at most a quarter of the free
 ///  memory (if they do not fit, senses run one after another); with angular moments there is one path per function;
-///  - along a periodic axis, paths take two floats, and the maps are kept from sweep to sweep;
+///  - along a periodic axis, a path integral takes two floats, and the maps are kept from sweep to sweep;
 ///  - if light is given or summed per cell of the faces, two floats per ray, channel, plane and cell of the plane's
 ///  edges.
 ///
@@ -51,7 +51,8 @@ public:
   void Forget() override { this->Forget({}); }
 
 private:
-  /// Sources, incident light and moves of the rays while a batch (lanes that run concurrently) crosses all planes once.
+  /// Inputs for the crossing of all planes by a batch (lanes that run concurrently): sources, incident light and moves
+  /// of the rays.
   struct Crossing
   {
     bool shines; ///< whether the medium has a source
@@ -103,7 +104,8 @@ private:
   Buffer<CrossingInfo> Crossings;
   Buffer<float> Along;    ///< values of the angular functions, GpuLanes::functions
   Buffer<float> Directed; ///< source in each ray's direction, W / (length^3 sr), in the layout of the maps
-  /// Power of the rays of open axes, W, before planes with even and with odd index, in the layout of SweepLane::map
+  /// Power of the rays of open axes, W, in the layout of SweepLane::map: before planes with even index, and before
+  /// planes with odd index
   Buffer<float> Maps[2];
   /// Rays in transit along periodic axes; key: index of the batch's first lane, and index of the group of channels that
   /// are swept together

@@ -13,8 +13,8 @@ typedef struct
   PlaneInfo planes;
   int axis;
   int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
-  /// Number of planes that rays cross in the laps in which they start: the planes of the axis, on a short periodic axis
-  /// those of several laps
+  /// Number of planes that rays cross in the laps in which they start. There is one such lap, or several on a short
+  /// periodic axis
   int patternPlanes;
   int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
   int periodicU, periodicV; ///< whether the axes u and v, normal to the marching axis, are periodic
@@ -27,7 +27,8 @@ typedef struct
   ulong map; ///< index of the first float of the lane's maps, [ray][channel][v][u]
   /// Index of the first float of the lane's path integrals; with angular moments [function][channel][voxel]
   ulong path;
-  /// The lane's first float has index 6 * deposit in the partial currents and index 3 * deposit in the net flux
+  /// The lane's first float has the index 6 * deposit in the partial currents, and the index 3 * deposit in the net
+  /// flux
   ulong deposit;
   /// Index of the first float of the lane's escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
   ulong escaped;
@@ -38,9 +39,10 @@ typedef struct
   ulong sides;
 } SweepLane;
 
-/// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane, within one channel. On the faces -u, +u, -v,
-/// +v the cell at position i of plane p has the index first + p * plane + i * along. `start` and `end` are the indices
-/// of the first cells of the faces where the lane's rays start and end, [v][u].
+/// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane (the rays of one sense along an axis), within
+/// one channel. On the faces -u, +u, -v, +v the cell at position i of plane p has the index first + p * plane + i *
+/// along. `start` and `end` are the indices of the first cells of the faces where the lane's rays start and end,
+/// [v][u].
 typedef struct
 {
   int first[4], plane[4], along[4];
@@ -54,14 +56,15 @@ typedef struct
 typedef struct
 {
   ulong sigmaFirst, sourceFirst; ///< index of the first channel's first value in sigma_t, in source
-  /// Index of the first channel's first value in `path`; in the net flux it is three times, in the partial currents six
-  /// times this index
+  /// Index of the first channel's first value in `path`. The index in the net flux is three times this number, and that
+  /// in the partial currents six times
   ulong putFirst;
   ulong stride; ///< floats from one channel to the next
-  /// For a streamed volume: index of the first float of the slot (buffer for one slice) in the array of the source, and
-  /// of the path; else 0
+  /// For a streamed volume: index of the slot's first float in the array of the source, and in that of the path
+  /// integrals; 0 if the volume is not streamed. A slot is a buffer for one slice
   ulong slotSource, slotPath;
-  /// For a streamed volume: index of the first float of the slot in arrays with one value per voxel and channel; else 0
+  /// For a streamed volume: index of the slot's first float in arrays with one value per voxel and channel; 0 if the
+  /// volume is not streamed
   ulong slotValues;
   int slotPlane; ///< index in the box of the slot's first plane; 0 if the volume is not streamed
   int plane;     ///< index of the plane that is crossed, counted from where rays start
@@ -72,8 +75,8 @@ typedef struct
   int ofRound;
   int firstChannel;
   int shines; ///< 1: the medium has a source (emission or scattered light)
-  /// 1: lanes add to the arrays, one lane after another or repeatedly around a periodic axis; 0: each lane writes its
-  /// own arrays
+  /// 1: lanes add to the arrays, because lanes run one after another or cross voxels repeatedly around a periodic axis;
+  /// 0: each lane overwrites its own arrays
   int adds;
   /// 1: the moments of path integrals are in the volume's array, laid out as `moments`; 0: in the lane's own array,
   /// [function][channel][voxel]

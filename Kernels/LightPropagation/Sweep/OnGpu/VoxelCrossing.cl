@@ -1,6 +1,6 @@
 // Functions that carry the rays of one bundle through a voxel of a plane, for the kernel in SweepOnGpu.cl, which lists
-// the host's definitions. A voxel's work-item recomputes the attenuation, in the neighbouring voxels, of the rays that
-// enter from them (numerics.md, Eq. (30a)).
+// the host's definitions. Rays enter a voxel from its neighbours. The voxel's work-item recomputes their attenuation in
+// these neighbours (numerics.md, Eq. (30a)).
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
@@ -14,8 +14,8 @@
 #endif
 
 // Effect of a segment (path through one voxel) on rays of power P with a source q: path += meanLength P, P' = P keep +
-// P change + power q meanLength, with `power` the power of a ray at radiance 1. own: path integral that a unit source
-// in the voxel causes within the voxel, divided by `power`.
+// P change + power q meanLength, where `power` is the power of a ray at radiance 1. The member `own` is the path
+// integral that a unit source in the voxel causes within the voxel, divided by `power`.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -152,7 +152,7 @@ static colours rays_at(const plane_state* state, const member_state* member, int
   return rays;
 }
 
-// Power of the rays that enter the box through its sides from position (u, v) outside it, W.
+// Power of the rays that enter the box through its sides, W. They come from position (u, v), outside the box.
 static colours coming_in(const plane_state* state, const member_state* member, int u, int v)
 {
   const bool beyondU = u < 0 || u >= state->sizeU, beyondV = v < 0 || v >= state->sizeV;
@@ -203,7 +203,7 @@ static int2 go_round(const plane_state* state, int u, int v)
   return (int2)(state->lane->periodicU ? u + past_u : u, state->lane->periodicV ? v + past_v : v);
 }
 
-// Power of the rays after the first segment of the plane, in the voxel at (of_u, of_v), W.
+// Power of the rays behind the first segment of their path through the plane, W; this segment is in voxel (of_u, of_v).
 static colours behind_first(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -224,7 +224,8 @@ static colours mixed(colours stay, colours come, float part)
   return stay;
 }
 
-// Power of the rays after the second segment of the plane, in the voxel at (of_u, of_v), W.
+// Power of the rays behind the second segment of their path through the plane, W; this segment is in voxel (of_u,
+// of_v).
 static colours behind_second(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -273,7 +274,7 @@ static void put_down(voxel_sums* sums, colours rays, colours not_lost, float mea
   }
 }
 
-// Adds the power of the rays that leave the box from voxel (u, v) in the move before segment s to the sums. At the
+// Adds to the sums the power of the rays that leave the box from voxel (u, v) in the move before segment s. At the
 // box's edge, half of the power of rays that move along u and v at once leaves through each of the two faces, and half
 // of the light incident next to the edge leaves again without crossing a voxel.
 static void count_escaped(
@@ -289,8 +290,7 @@ static void count_escaped(
   {
 #if SIDES == 2
     const __global float* in = member->sidesIn + c * SIDE_FLOATS(state);
-    // Power that enters the voxel through the faces normal to u and to v, where rays move along u and v at once in this
-    // segment
+    // Power of the incident rays at the faces normal to u and to v, for a move along u and v at once
     const float2 beyond = (float2)(in[state->sizeU + v], in[u]);
 #else
     const float2 beyond = member->entering[c].xy;
@@ -322,7 +322,7 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
   }
 }
 
-// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents.
+// Adds to the partial currents the power that enters voxel (u, v) through its faces in the move before segment s.
 // Diagonal rays cross an edge between four voxels. Half of those that move from one neighbour of voxel (u, v) to
 // another pass through voxel (u, v).
 // @param come  power of the rays that arrive from the voxel where the move starts
@@ -345,8 +345,8 @@ static void count_currents(
 }
 #endif
 
-// Power that is subtracted from each ray's power in the path integral, W. It lowers the power that the voxel takes from
-// the rays by the power that the voxel's octant source adds to them, so that total power is conserved.
+// Power that is subtracted from each ray's power in the path integral, W. The voxel's octant source adds this power to
+// the rays; the voxel then takes less power from the rays by the same amount, so that total power is conserved.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };
@@ -359,8 +359,7 @@ static colours not_lost_of(const plane_state* state, const member_state* member,
   return more;
 }
 
-// Carries the rays of one direction (member) of a bundle through voxel (u, v). Returns their power at the next plane,
-// W.
+// Carries the rays of one direction (member) of a bundle through voxel (u, v). Returns their power behind the plane, W.
 static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
   const segment_effect* effects, float3 along, int u, int v)
 {

@@ -12,8 +12,9 @@
 
 namespace tyndall
 {
-/// Values of an array with one value per voxel and face, such as Deposit::partialCurrents, for the voxels that touch a
-/// block's faces from outside: each voxel's value at the face that it shares with the block.
+/// Values of the voxels that touch a block's faces from outside: the value of each such voxel at the face that it
+/// shares with the block. They are taken from an array with one value per voxel and face, such as
+/// Deposit::partialCurrents.
 struct BeyondFaces
 {
   /// Values [channel][face][cell of the face, its lower axis fastest]; null: the block is the whole domain
@@ -26,8 +27,8 @@ struct BeyondFaces
 using FetchBeyondFaces = std::function<BeyondFaces(const Buffer<float>& byFaces)>;
 
 /// Halo exchange of face values. For every voxel that touches a face of its block from outside, and every channel, each
-/// rank receives the voxel's value at that face from the rank that owns the voxel (around a periodic axis possibly the
-/// same rank).
+/// rank receives the voxel's value at that face from the rank that owns the voxel. Around a periodic axis, this may be
+/// the same rank.
 class AcrossFaces
 {
 public:

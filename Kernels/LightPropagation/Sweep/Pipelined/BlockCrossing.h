@@ -26,8 +26,8 @@ struct BlockWorkspace
 {
   SweepWorkspace sweep;
   Buffer<float> sidesIn, sidesOut;
-  /// For GPU kernels: power of the rays before planes with odd index, W (sweep.maps holds those before even ones), and
-  /// source along each ray, W / (length^3 sr)
+  /// For GPU kernels: otherMaps has the power of the rays before planes with odd index, W (sweep.maps has it before
+  /// planes with even index); directed has the source along each ray, W / (length^3 sr)
   Buffer<float> otherMaps, directed;
 };
 
@@ -66,7 +66,8 @@ public:
   /// crossing a voxel
   /// @param outerSides  bit i: light that crosses side i of -u, +u, -v, +v leaves the domain
   /// @param rays  on entry, the incoming rays; on return, the outgoing ones
-  /// @return power that left the domain sideways, W, consecutive arrays [-u, +u, -v, +v][channel], to be added up
+  /// @return power that left the domain sideways, W, as consecutive arrays [-u, +u, -v, +v][channel] whose sum is the
+  ///   total
   virtual std::vector<float> Cross(const SweepVolume& volume, const std::vector<cl_float4>& beyond, int outerSides,
     RaysAtFaces& rays, const Monitor& monitor) = 0;
 };

@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// Carries a block's rays with the kernels of Sweep/OnGpu and their option SIDES (LanePlane.cl), as one lane (all rays
-/// march in one sense along an axis) that adds to the deposit. Maps are [ray][channel][v][u]. Arrays in host memory are
+/// Carries a block's rays with the kernels of Sweep/OnGpu and their option SIDES (LanePlane.cl), as one lane (rays of
+/// one sense along an axis), which adds to the deposit. Maps are [ray][channel][v][u]. Arrays in host memory are
 /// streamed through the device in slices.
 class BlockCrossingOnGpu final : public BlockCrossing
 {
@@ -60,7 +60,8 @@ private:
   /// Power of light incident from outside the domain, W, [ray][channel]: x through the face normal to u, y through the
   /// face normal to v
   Buffer<cl_float4> Beyond;
-  /// Power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face]; sums over the positions
+  /// Left: power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face]. Sides: its sums
+  /// over the positions
   Buffer<float> Left, Sides;
 };
 

@@ -112,8 +112,9 @@ private:
 /// Sideways move, for one direction (member) of a bundle, in one stage of crossing a plane, voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
-/// Adds incident light and sums escaped power per cell of the domain's faces in the sweep of a block. Computes the same
-/// as SweepSides.cl and SweepMaps.cl, but on the host, where the powers of the rays at the block's faces are stored.
+/// Adds incident light, and sums escaped power, per cell of the domain's faces in the sweep of a block. It computes the
+/// same as SweepSides.cl and SweepMaps.cl, but on the host, where the powers of the rays at the block's faces are
+/// stored.
 class BlockSweep::ByCells
 {
 public:

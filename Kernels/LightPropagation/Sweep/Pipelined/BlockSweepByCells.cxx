@@ -102,8 +102,8 @@ double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) c
   return this->Cells.in ? this->Cells.in[this->CellOf(face, voxel, channel)] : 0.0;
 }
 
-/// Mean incident radiance of a cell of a face and of the cell one move of the ray further; of the first cell alone if
-/// the other one is not on the face.
+/// Mean incident radiance of two cells of a face: that of `voxel`, and that one move of the ray further. If the second
+/// cell is not on the face, the radiance of the first cell.
 double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, int move, int channel) const
 {
   const int size = this->Sweep.Whole.size[aside];
@@ -154,7 +154,7 @@ void BlockSweep::ByCells::EnterAside(const Aside& ray, RaysAtFaces& in) const
   {
     return;
   }
-  // Light per cell that a ray brings in if it moves diagonally, along both transverse axes u and v, in one step.
+  // Incident radiance per cell for a ray that moves diagonally, along both transverse axes u and v, in one step.
   // Through an edge of the domain, half of its power enters through the face normal to u and half through the face
   // normal to v. If only one of these two faces of the block is a face of the domain, all of the power enters through
   // that one.
@@ -210,8 +210,8 @@ void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) c
   }
 }
 
-/// Sums the power of diagonally moving rays that enter the domain through one face at an edge and leave at once through
-/// the other face there, without crossing a voxel.
+/// Sums the power of diagonally moving rays that enter the domain through one face at an edge, and leave at once
+/// through the other face at this edge, without crossing a voxel.
 void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& boundary, SweepTally& tally) const
 {
   if (ray.du == 0 || ray.dv == 0)

@@ -38,8 +38,8 @@ public:
   /// @param request  its member `box` is ignored: the whole domain is swept. On ranks without voxels its member
   ///   `angular` may be null
   /// @param workspace  must outlive this object; may be shared by sweeps that never run concurrently
-  /// @param mostRays  maximum number of rays that cross a block together; 0: the number that minimises the time of the
-  /// sweep (FastestParts)
+  /// @param mostRays  maximum number of rays that cross a block together; 0: the number that minimises the simulated
+  /// time of the sweep (FastestParts)
   /// @throws InvalidInput if blocks wait for each other's rays in a cycle
   SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request,
@@ -69,8 +69,8 @@ private:
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    /// Contacts (sets of shared voxel faces) within the domain: per rank that sends rays to this block, and per rank
-    /// that receives rays from it
+    /// Contacts (sets of shared voxel faces) within the domain. senders: for each rank, those through which it sends
+    /// rays to this block; receivers: those through which it receives rays from this block
     std::vector<Contacts> senders, receivers;
     std::vector<Around> aroundFrom; ///< rays that reach this rank around a periodic axis, per sending rank
     /// Contacts around periodic axes, per receiving rank: first around the transverse axes, then around the marching
@@ -98,8 +98,7 @@ private:
     std::array<bool, 3> goesOn = {}; ///< whether rays that march along each axis take part in this lap
     bool again = false;              ///< whether this pass carries only rays that have wrapped around a transverse axis
     SweepTally tally = {};
-    /// Power of the rays that left the domain at the end of their periodic marching axis in this lap, per marching
-    /// axis, W
+    /// For each periodic marching axis: power of the rays that left the domain at its end in this lap, W
     std::array<Rgb, 3> ahead = {};
   };
   SweepTally ApplyGroup(

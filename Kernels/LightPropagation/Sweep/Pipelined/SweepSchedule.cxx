@@ -153,8 +153,8 @@ struct Receiver
   std::size_t rays = 0;
 };
 
-/// Dependency graph of the blocks for one set of bundles: senders, receivers, and the longest chain of blocks downwind
-/// of each.
+/// Dependency graph of the blocks for one set of bundles: senders and receivers of each block, and the length of the
+/// longest chain of blocks downwind of it.
 struct TaskGraph
 {
   std::vector<std::vector<Receiver>> receivers; ///< per rank: ranks that receive its rays
@@ -163,8 +163,8 @@ struct TaskGraph
 };
 
 /// Number of rays that cross a contact (set of shared voxel faces) between two blocks, per channel. A ray passes
-/// through faces parallel to the marching axis only in some planes. At such faces it counts as the mean number of
-/// voxels that it moves sideways per plane.
+/// through faces parallel to the marching axis only in some planes. At these faces a ray counts as a fraction: the mean
+/// number of voxels that it moves sideways per plane.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -182,7 +182,7 @@ std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& cont
   return static_cast<std::size_t>(rays);
 }
 
-/// Number of blocks downwind of a block on the longest chain of blocks that wait for its rays; found by recursion.
+/// Number of blocks in the longest chain of blocks downwind that wait for the rays of a block. Found by recursion.
 int FindBehind(TaskGraph& graph, int rank)
 {
   int& behind = graph.behind[rank];
@@ -350,7 +350,7 @@ private:
   const SweepCosts& Costs;
   std::vector<TaskGraph> Graphs;
   /// Per rank: tasks that are ready to run, as pairs (-n, task) in order of urgency, where n is the number of blocks in
-  /// the longest chain downwind that waits for the task
+  /// the longest chain downwind that waits for the rays of this task
   std::vector<std::set<std::pair<int, int>>> Ready;
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time

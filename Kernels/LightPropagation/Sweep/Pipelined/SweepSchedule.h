@@ -57,13 +57,14 @@ struct SweepCosts
   double ofValue = 0.0;   ///< cost per message of each ray in it, counted per voxel face that the ray crosses
 };
 
-/// Order in which each rank sweeps its block along the sets of parallel bundles. The sets of all octants start
-/// concurrently from their corners; a rank with several sets ready first sweeps the one for which most blocks wait
-/// downwind. Computed by simulating the sweep; identical on all ranks, whatever the actual run times.
+/// Order in which each rank sweeps its block along the sets of parallel bundles of rays. The sets of all octants start
+/// concurrently from their corners; if several sets are ready on a rank, it first sweeps along the set with the longest
+/// chain of waiting blocks downwind. The order is computed by simulating the sweep; identical on all ranks, whatever
+/// the actual run times.
 class SweepSchedule
 {
 public:
-  /// @param tasks  sets of parallel bundles of rays; in each task a rank sweeps its block along one set
+  /// @param tasks  sets of parallel bundles of rays; a task is the sweep of a rank's block along one set
   /// @throws InvalidInput if blocks wait for each other's rays in a cycle, which cannot occur if the partition is made
   /// by successive cuts along planes
   SweepSchedule(const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs);

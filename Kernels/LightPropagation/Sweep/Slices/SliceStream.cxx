@@ -27,7 +27,7 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
 }
 
 /// Number of planes per slot (device buffer for a slice of a streamed volume) such that all slots fit in the device
-/// memory that the rays and the scratch memory leave free; at least one.
+/// memory that the rays and the scratch memory leave free; at least one plane.
 int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
   std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
@@ -65,9 +65,9 @@ SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, 
   return piece;
 }
 
-/// Cuts the launches of a sweep into shorter ones, such that in each launch a unit of work (rays carried by one
-/// work-item) needs only the planes in one slot. The units of work that run concurrently and the order of additions to
-/// each plane do not change, so results are identical bit for bit.
+/// Cuts the launches of a sweep into shorter launches, in which each unit of work (rays carried by one work-item) needs
+/// only the planes in one slot. The units of work that run concurrently and the order of additions to each plane do not
+/// change, so results are identical bit for bit.
 /// @param schedule  planes of each unit of work, [launch][unit of work], first and end
 /// @param thickness  planes per slot
 /// @param aligned  pieces end at multiples of this number of planes or where the planes of a launch end; 1: anywhere
@@ -98,8 +98,8 @@ std::vector<std::vector<SlicePiece>> CutIntoPieces(
   return launches;
 }
 
-/// Whether two pieces (ranges of planes) access common memory: planes are stored in groups of `aligned` neighbouring
-/// planes, and both pieces contain planes of the same group.
+/// Whether two pieces (ranges of planes) share memory: planes are stored in groups of `aligned` neighbouring planes,
+/// and both pieces contain planes of the same group.
 bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
 {
   const auto begin = [aligned](const SlicePiece& piece) { return piece.begin / aligned; };
@@ -304,8 +304,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   return arrays;
 }
 
-/// Rows of floats to copy between host array and slot for a piece (range of planes): one part, such as a channel, of an
-/// array without angular moments.
+/// Rows of floats to copy between a host array and a slot for a piece (range of planes). They hold one part, such as a
+/// channel, of an array without angular moments.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -321,8 +321,8 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Rows of floats to copy between host array and slot for a piece (range of planes): the moments of all angular
-/// functions except the first.
+/// Rows of floats to copy between a host array and a slot for a piece (range of planes). They hold the moments of all
+/// angular functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;

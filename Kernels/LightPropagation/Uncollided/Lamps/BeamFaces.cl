@@ -7,8 +7,8 @@
 #define BEFORE 1 // the voxel is outside the box, and the beam approaches the box
 #define AFTER 2
 
-// Returns where the voxel with index i along an axis is, relative to the box: INSIDE, BEFORE or AFTER, as seen by a
-// beam with this tangent along the axis. On a periodic axis, wraps i around.
+// Returns where the voxel with index i along an axis is relative to the box: INSIDE it, or BEFORE or AFTER it on the
+// way of a beam with this tangent along the axis. On a periodic axis, wraps i around.
 static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 {
   const int n = lamp->size[axis];
@@ -64,8 +64,9 @@ static bool is_image(const LampInfo* lamp, int axis, int around)
   return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
 }
 
-// Whether a part of a rectangular lamp illuminates a voxel (coordinates not wrapped around). Smaller parts, into which
-// this part is divided, illuminate nearer voxels; the larger part that contains this part illuminates farther voxels.
+// Whether a part of a rectangular lamp illuminates a voxel (coordinates not wrapped around). Nearer voxels are
+// illuminated by the smaller parts into which this part is divided, and farther voxels by the larger part that contains
+// it.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 {
   return !VACUUM ||
@@ -164,7 +165,7 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
 
 // Removes the power of a beam that has left through the lateral faces since the last step. The remaining power is
 // distributed uniformly over the cross-section inside the box, to which the edges are clipped.
-//   first  whether the beam reaches the box in this step, so that the part outside the box has not entered
+//   first  whether the beam reaches the box in this step; the part outside the box has then never been inside
 static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 way,
   float2* edges_u, float2* edges_v, BeamOnItsWay* beam, lamp_tally* tally)
 {

@@ -3,8 +3,8 @@
 #pragma once
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 
-// Factor b by which path integrals are multiplied in fixed point (numerics.md, Eq. (35)): it keeps their precision in
-// optically thick voxels, where they are small.
+// Factor b by which path integrals are multiplied before they are converted to fixed point (numerics.md, Eq. (35)). It
+// keeps their precision in optically thick voxels, where path integrals are small.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
@@ -38,10 +38,10 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
   return 0.25f * sum * width * height * d;
 }
 
-// Solid angle, sr, of a rectangle of this width and height, centred at (a, b), in a plane at distance d. Near the
-// rectangle a closed form is used (numerics.md, Eq. (16)); far away, where the closed form is a small difference of
-// large angles, numerical quadrature.
-//   far  squared ratio of distance to longer edge from which on quadrature replaces the closed form
+// Solid angle, sr, of a rectangle of this width and height, centred at (a, b), in a plane at distance d. A closed form
+// is used near the rectangle (numerics.md, Eq. (16)), and numerical quadrature far away, where the closed form is a
+// small difference of large angles.
+//   far  quadrature is used if the squared ratio of distance to longer edge is at least this value
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
   return a * a + b * b + d * d < far * fmax(width * width, height * height)
@@ -64,8 +64,8 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 
 #define SLICES 512 // number of slices into which a beam is divided if the border of the cone crosses it
 
-// Slice of a pyramid of beams (all directions nearest to one sense of an axis): its rays d = (ahead, u + x, v) at
-// fixed v. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and along + x slope >= 0 (numerics.md, Eq. (33a)).
+// Slice of a pyramid of beams: the rays d = (ahead, u + x, v) at fixed v. A pyramid has all directions nearest to one
+// sense of an axis. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and along + x slope >= 0 (numerics.md, Eq. (33a)).
 typedef struct
 {
   float ahead, u, v;
@@ -74,8 +74,8 @@ typedef struct
 } cone_slice;
 
 // Slice of the pyramid at v.
-// @param v  position across the pyramid's axis at a distance of one layer of voxels, relative to that of the reference
-//   tangent (BeamRow::baseV); a length
+// @param v  lateral position of the slice, a length, at a distance of one layer of voxels along the pyramid's axis;
+//   relative to the position at the reference tangent (BeamRow::baseV)
 static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
 {
   const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -132,7 +132,7 @@ static float2 part_of_slice(const cone_slice* slice, float2 edges)
   return within ? (float2)(first, second) : edges.xx;
 }
 
-// Solid angle of the part of a slice in the interval `part` of x, divided by the slice's height along v.
+// Solid angle of the interval `part` of x in a slice, divided by the slice's height along v.
 static float angle_of_slice(const cone_slice* slice, float2 part)
 {
   const float x = slice->u + 0.5f * (part.x + part.y);
@@ -163,9 +163,9 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   return inside / all;
 }
 
-// Tangents of a beam's centre: tangent_from_base() relative to the reference tangents of its pyramid (BeamRow::baseU,
-// baseV), tangent_of() relative to the pyramid's axis. begin_of() is the position of the beam's centre at its start,
-// voxels.
+// Tangents of a beam's centre. tangent_from_base() returns them relative to the reference tangents of its pyramid
+// (BeamRow::baseU, baseV), tangent_of() relative to the pyramid's axis. begin_of() returns the position of the beam's
+// centre at its start, voxels.
 static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);

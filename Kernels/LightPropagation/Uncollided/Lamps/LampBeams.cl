@@ -4,17 +4,17 @@
 //   MOMENTS        1: first moments of the deposit are computed
 //   NET_FLUX       1: net flux is computed
 //   FACE_OUT       1: the power that leaves through each cell of the box's faces is summed
-//   VACUUM         1: the lamp is a rectangle in parts, each of which lights some voxels; the deposit that there would
-//                  be in vacuum is summed too and, if an axis is periodic (AROUND 1), the deposit of beams before they
-//                  wrap around it
-//   THIN           optical thickness of a voxel below which loss is taken as uniform in it
+//   VACUUM         1: the lamp is a rectangle that is divided into parts, each of which lights some voxels. The deposit
+//                  that the light would have in vacuum is summed too. If an axis is periodic (AROUND is 1), so is the
+//                  actual deposit of beams before they wrap around it
+//   THIN           below this optical thickness of a voxel, light is taken to be lost uniformly in it
 //   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it
 //
 // Space around the lamp is divided into six pyramids, one for each sense along an axis. In a pyramid beams form a grid
 // of tangents, fine enough that a beam is at most a voxel wide where it leaves the box. A beam advances layer by layer;
-// its square cross-section overlaps up to four voxels, each of which is crossed by its share of the power (numerics.md,
-// Eqs. (33), (34)). All values are fractions of the traced power, the share of the lamp's power that may reach the box
-// (LampOnGrid.h), and apply to all channels, which share sigma_t.
+// its square cross-section overlaps up to four voxels, and each of these is crossed by its share of the power
+// (numerics.md, Eqs. (33), (34)). All values are fractions of the traced power, the share of the lamp's power that may
+// reach the box (LampOnGrid.h), and apply to all channels, which share sigma_t.
 
 #include "LightPropagation/Uncollided/Lamps/BeamFaces.cl"
 #include "LightPropagation/Uncollided/Lamps/BeamPower.cl"
@@ -95,7 +95,7 @@ typedef struct
   float partU, partV;    // fraction of the cross-section in the first voxel
 } cross_section;
 
-// Power of a beam after a step, summed over the parts of its cross-section, each of which lies in one voxel.
+// Power of a beam after a step, summed over the parts of its cross-section. Each part lies in one voxel.
 typedef struct
 {
   float remaining; // power at the end of the step; the losses `taken` are not subtracted from it
@@ -113,8 +113,8 @@ static float centre_in_voxel(float2 edges, int first, int next)
 // Attenuates the part of a beam's cross-section that lies in one voxel, and deposits the power lost (numerics.md, Eq.
 // (34)).
 //   q      which of the four voxels that the cross-section may overlap: bit 0 is the index along u, bit 1 that along v
-//   after  sum over the parts that have already crossed their voxels
-// @return the sum including this part
+//   after  sum of the powers of those parts of the cross-section that have already crossed their voxels
+// @return the sum including the power of this part
 static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const beam_step* step,
   const cross_section* section, int q, const __global float* sigma, __global long* path, ulong stride,
   const BeamOnItsWay* beam, const lamp_tally* tally, step_power after)
@@ -260,8 +260,8 @@ static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, flo
 #define SHORT_OF 2
 #define AMID 0
 
-// Position of a beam's centre relative to the voxels that the beam illuminates, as it originates from one part of the
-// rectangle: AMID, SHORT_OF or BEYOND these voxels.
+// Position of a beam's centre: AMID the voxels that the beam illuminates, SHORT_OF them, or BEYOND them. A beam from
+// one part of a rectangle illuminates only some voxels.
 static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float2 middle)
 {
   int voxel[3];
@@ -274,7 +274,7 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
 }
 
 // Attenuates a beam over one step through voxels that it does not illuminate, by the extinction at its centre.
-// @return whether the whole cross-section is in the box; if not, nothing is done
+// @return whether the whole cross-section is in the box; if it is not, the function does nothing
 static bool pass_through(
   const LampInfo* lamp, const BeamRow* row, const beam_step* step, const __global float* sigma, BeamOnItsWay* beam)
 {
@@ -409,7 +409,7 @@ static void end_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, flo
 // Traces one beam from its entry into the box, or from its saved state, until it leaves.
 // @param begin  position of the beam's centre at its start, voxels
 // @param power  initial power of the beam
-// @return whether the beam has ended; otherwise, if IN_BLOCK, it has left the block, with its state in `beam`
+// @return whether the beam has ended; false, only if IN_BLOCK: it has left the block, and its state is in `beam`
 static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam, lamp_tally* tally)
 {
@@ -507,7 +507,7 @@ static void write_sums(const lamp_tally* tally, float shone, __global float* sum
   sums[8] = shone;
 }
 
-// Traces a beam through a block of the grid. `beam` is replaced by its state when it has left the block, or ended.
+// Traces a beam through a block of the grid. `beam` is updated to its state when it has left the block, or ended.
 static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
   __global long* path, ulong stride, __global long* cells, __global float* sums)
 {
@@ -557,12 +557,12 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 
 // Traces rows of beams through the grid. If IN_BLOCK is 1, traces beams through a block of the grid instead: beams that
 // start in the block, and beams that arrive from other blocks.
-// path  fraction of the power times length, in fixed point, [voxel of LampInfo::stored], added to. MOMENTS: [path, path
-//       times distance along x, y, z][voxel]. NET_FLUX: then path times direction, [x, y, z][voxel]. VACUUM: then the
-//       path in vacuum of light before it wraps around an axis, [voxel], and if AROUND the actual path of that light,
-//       [voxel]
-// cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
-// beams IN_BLOCK: replaced by their states when they have left the block, or ended
+// path  sums in fixed point, to which the kernel adds: consecutive arrays [voxel of LampInfo::stored]. Path integral,
+//       as a fraction of the traced power times length; if MOMENTS, path times distance along x, y and z; if NET_FLUX,
+//       path times direction along x, y and z; if VACUUM, the path that light would have in vacuum before it wraps
+//       around an axis, and if AROUND the actual path of that light
+// cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT beams states of the beams, if
+// IN_BLOCK; updated when a beam has left the block or ended
 // first, count  index of the first row (IN_BLOCK: beam) of this launch, and number of rows or beams
 // sums  tallies, [row or beam][LampRowSums], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,

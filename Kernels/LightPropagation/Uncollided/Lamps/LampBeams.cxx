@@ -25,7 +25,7 @@ static const int* WhereIs(const BeamOnItsWay& beam)
 
 namespace
 {
-/// Number of rows of beams per launch, such that a launch with rows of a thousand voxels takes well below a tenth of a
+/// Number of rows of beams per launch. A launch with rows of a thousand voxels then takes well below a tenth of a
 /// second.
 constexpr int RowsPerLaunch = 256;
 /// If rows have fewer than this number of beams, a launch traces proportionally more than RowsPerLaunch rows
@@ -34,7 +34,7 @@ constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they 
 /// Width of the halo, voxels: a beam traced in a block may extend one voxel beyond it, and by rounding one more.
 constexpr int Reach = 2;
 
-/// Maximum number of passes along periodic axes (LampPyramids.h: each traces a range of layers)
+/// Maximum number of passes along periodic axes; each pass traces a range of layers (LampPyramids.h)
 constexpr int PassesAtMost = 9;
 /// Number of passes after which the remaining light of a box that is periodic along all axes is distributed uniformly.
 constexpr int EvenFrom = 3;

@@ -12,11 +12,11 @@ namespace tyndall
 /// deposited as in a sweep (numerics.md, sections 5.3 to 5.5). A quadrature would represent such a lamp by few rays,
 /// with ray effects of 100% and more.
 ///
-/// Lamps emit square beams, at most half a voxel wide where they leave the box and at least 16 across a spot's cone,
-/// each with the power of its solid angle, Eq. (33). A rectangle is divided into parts, each of which lights the voxels
-/// that are far enough away from it, with beams one voxel wide or more; each voxel's path is then scaled to be exact in
-/// vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so that the sum does not depend on the order
-/// of the beams. If the lamp is inside the box, all of its power is traced.
+/// A lamp emits square beams, each with the power of its solid angle, Eq. (33). Beams are at most half a voxel wide
+/// where they leave the box, and at least 16 beams fit across a spot's cone. A rectangle is divided into parts. Each
+/// part lights the voxels that are far enough away from it, with beams one voxel wide or more. Each voxel's path
+/// integral is then scaled to be exact in vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so
+/// that the sum does not depend on the order of the beams. If the lamp is inside the box, all of its power is traced.
 ///
 /// On a periodic axis rays wrap around, in at most nine passes with fewer beams at larger distance, until 0.005% of the
 /// power is left (LampPyramids.h). A lamp outside the box then illuminates only the part of the box that it sees

@@ -28,7 +28,8 @@ typedef struct
   float spacing[3];
   float direction[3];       ///< axis of a spot's cone or normal of a rectangle, unit vector in space
   float cosine, sineSquare; ///< cosine and squared sine of the half angle of a spot's cone
-  /// Fraction of the traced power (LampOnGrid::Share) emitted per steradian; if LAMBERT, along the normal
+  /// Fraction of the traced power (LampOnGrid::Share) that is emitted per steradian; if LAMBERT, its value along the
+  /// normal
   float intensity;
   /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
   float scale;
@@ -64,12 +65,12 @@ typedef struct
   int beside;
   float share;   ///< fraction of the lamp's power emitted by the point from which the beams originate
   float part[3]; ///< centre of the part of a rectangle that this point represents
-  /// Squared distances from `part`. partFrom: nearer voxels are not lit by this row's beams. partSeen: a beam whose
-  /// centre is nearer crosses no voxel that it lights.
+  /// Squared distances from `part`. partFrom: this row's beams do not light nearer voxels. partSeen: a beam crosses no
+  /// voxel that it lights as long as its centre is nearer.
   float partFrom, partSeen;
   float whole[3]; ///< centre of the larger part of which `part` is a subdivision
-  /// Squared distances from `whole`. wholeFrom: voxels beyond are not lit by this row's beams. wholeSeen: a beam whose
-  /// centre is beyond crosses no voxel that it lights.
+  /// Squared distances from `whole`. wholeFrom: this row's beams do not light farther voxels. wholeSeen: a beam crosses
+  /// no voxel that it lights once its centre is farther.
   float wholeFrom, wholeSeen;
 } BeamRow;
 
@@ -95,12 +96,12 @@ typedef struct
   float edges[3][3]; ///< unit vectors along the two edges and the normal
   float reach[2];    ///< half the lengths of the two edges
   int size[3];       ///< size of the block, voxels
-  /// Size of the whole grid, voxels, and number of periodic images of the lamp on either side along each axis that also
+  /// Size of the whole grid, voxels; number of periodic images of the lamp, on either side along each axis, that also
   /// emit.
   int period[3], images[3];
   float spacing[3];
-  /// Path integral in a voxel in vacuum, for a lamp of 1 W and per steradian that the rectangle subtends at the voxel,
-  /// W length / sr
+  /// Path integral in a voxel in vacuum, for a lamp of 1 W, divided by the solid angle that the rectangle subtends at
+  /// the voxel, W length / sr
   float path;
   float scale; ///< fixed-point units per unit of the path integral, length
 } RectangleInfo;

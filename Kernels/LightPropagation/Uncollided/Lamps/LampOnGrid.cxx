@@ -111,7 +111,7 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
     return { in, in, in };
   }
   // The light of a rectangle's parts does not conserve energy exactly. The power that the medium removes and the power
-  // that escapes are therefore corrected, the larger of the two more (numerics.md, Eq. (34b)).
+  // that escapes are therefore corrected, the larger one by more (numerics.md, Eq. (34b)).
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
   if (!(square > 0.0))
@@ -122,9 +122,9 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   return { in, share * (1.0 + rest * kept), share * (1.0 + rest * left) };
 }
 
-/// The share is the lamp's intensity times the solid angle of the sphere around the box, rounded up to a power of two;
-/// for a rectangle, it is the fraction of its light that enters the box, rounded in the same way, if that fraction is
-/// known.
+/// The share is the lamp's intensity times the solid angle of the sphere around the box, rounded up to a power of two.
+/// For a rectangle it is instead the fraction of its light that enters the box, if that is known, rounded up in the
+/// same way.
 double LampOnGrid::Share() const
 {
   if (this->Lamp.type == LightType::Rectangle && this->Entering > 0.0)
@@ -252,8 +252,8 @@ LampInfo LampOnGrid::Describe(const VoxelBox& stored, const VoxelBox& followed) 
   return info;
 }
 
-/// Largest scale at which sums of path integrals do not overflow: the path integral of the lamp's full power through a
-/// voxel is at most its diagonal, and RoundsAtMost times that is at most 2^60 units.
+/// Largest scale at which sums of path integrals do not overflow. The path integral of the lamp's full power in a voxel
+/// is at most the voxel's diagonal; RoundsAtMost times the diagonal is at most 2^60 units.
 double LampOnGrid::UnitsPerLength() const
 {
   return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost))));

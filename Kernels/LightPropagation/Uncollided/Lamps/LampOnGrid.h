@@ -102,8 +102,8 @@ struct LampShares
 class LampOnGrid
 {
 public:
-  /// Maximum number of layers of voxels crossed in one launch, summed over its beams, so that a launch takes less than
-  /// a tenth of a second.
+  /// Maximum number of layers of voxels that the beams of one launch cross in total, so that a launch takes less than a
+  /// tenth of a second.
   static constexpr double LayersPerLaunch = 4e6;
 
   /// @param grid  the whole grid; must outlive this object
@@ -125,9 +125,9 @@ public:
   /// @param next  set to the index of the next batch's first point
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
-  /// Factors that normalise the energy balance of the lamp's beams. If the traced power is known exactly (for a lamp
-  /// inside the box, or a cone within the solid angle of the box), or the power that enters the box is, the factors
-  /// enforce the exact value.
+  /// Factors that normalise the energy balance of the lamp's beams. If the traced power or the power that enters the
+  /// box is known exactly, the factors enforce the exact value. The traced power is known for a lamp inside the box,
+  /// and for a cone within the solid angle of the box.
   /// @param taken  fraction of the traced power that the medium removes, used for a rectangle
   /// @param even  fraction of the traced power that is to be distributed uniformly over the box
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
@@ -173,7 +173,7 @@ private:
 };
 
 /// Fraction of the power of a point, spot or rectangle lamp that enters the box, in closed form (numerics.md, section
-/// 5.3); 0 if unknown: for a spot that is not outside the box or whose cone is too narrow for doubles, and for a
-/// rectangle too far away.
+/// 5.3); 0 if it is unknown, i.e. for a spot that is not outside the box or whose cone is too narrow for double
+/// precision, and for a rectangle that is too far away.
 double EnteringFraction(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
 }

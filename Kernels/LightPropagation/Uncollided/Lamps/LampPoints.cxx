@@ -200,7 +200,7 @@ private:
   RectangleArea Whole;
   glm::dvec3 Normal;
   double Finest; ///< length of the longer edge of the smallest parts
-  /// Minimum distance of voxels from the centre of a part that lights them, in radii of the part: PartDistance, more if
+  /// A part lights voxels at this or a larger distance from its centre, in radii of the part. PartDistance; more if
   /// Light::fineness is large.
   double Away;
   int PerEdge;

@@ -59,11 +59,11 @@ struct RectangleArea
   glm::dvec3 At(double a, double b) const { return this->middle + a * this->half[0] + b * this->half[1]; }
   Polygon Corners() const { return { this->At(-1, -1), this->At(1, -1), this->At(1, 1), this->At(-1, 1) }; }
 
-  /// Halves of the rectangle, across the longer edge; quarters if the edges are similar, so that rotated scenes are
-  /// divided equally.
+  /// Halves of the rectangle, divided across the longer edge; or quarters if the edges are similar, so that rotated
+  /// scenes are divided equally.
   std::vector<RectangleArea> Parts() const;
-  /// Gauss points and their weights: `perEdge` along each edge of a square; for an elongated rectangle about the same
-  /// total, with more along the longer edge and fewer across.
+  /// Gauss points and their weights. A square has `perEdge` points along each edge; an elongated rectangle has about as
+  /// many in total, with more along the longer edge and fewer along the shorter one.
   std::vector<std::pair<glm::dvec3, double>> Points(int perEdge) const;
 };
 

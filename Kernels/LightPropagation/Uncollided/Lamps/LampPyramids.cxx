@@ -40,7 +40,7 @@ struct BeamGrid
 
 /// Projection of a spot's cone onto the plane of a pyramid's axis and one lateral axis. The planes that touch the cone
 /// and contain the third axis are rotated by asin(sin(half angle) / R) from the cone's axis, where R is the length of
-/// that axis' projection onto the plane.
+/// the projection of the cone's unit axis vector onto the plane.
 struct ConeInPlane
 {
   ConeInPlane(double forward, double aside, double sine)
@@ -120,8 +120,8 @@ public:
     return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around) && this->Near < this->Reach;
   }
 
-  /// Range of tangents, along the k-th axis after the pyramid's axis, of the beams that are still in the box in this
-  /// pass (a range of layers in which beams are traced).
+  /// Range of tangents of the beams that are still in the box in this pass, along the k-th axis after the pyramid's
+  /// axis. A pass traces beams in a range of layers.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;

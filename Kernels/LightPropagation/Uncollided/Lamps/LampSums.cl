@@ -16,8 +16,8 @@ static float angle_seen(const RectangleInfo* rectangle, float3 from)
     : 0.0f;
 }
 
-// A subcell of a voxel: centre, relative to the rectangle's centre, along the rectangle's edges and normal; and edge
-// lengths along x, y, z.
+// A cell into which a voxel is divided. `middle` is its centre, relative to the rectangle's centre, along the
+// rectangle's edges and normal; `edge` has the edge lengths along x, y, z.
 typedef struct
 {
   float3 middle;
@@ -168,7 +168,7 @@ static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
 }
 
 // Computes the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum
-// (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path integral is set to that in vacuum, attenuated
+// (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path integral is set to its value in vacuum, attenuated
 // within the voxel.
 // fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
 __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
@@ -203,7 +203,7 @@ static float gain_of(const __global float* gains, ulong i)
 
 // Adds a lamp's path integrals to those of the deposit. One work-item per voxel and channel.
 // gains  factor of each voxel, if VACUUM
-// path   W length, [channel][voxel], added to
+// path   W length, [channel][voxel]; the kernel adds to it
 // units  value of a fixed-point unit, W length, [channel]
 // sigma  extinction, 1/length, shared by the channels
 __kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
@@ -219,7 +219,7 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
 // Adds to face_out the power of a lamp's light that escaped through each cell of the box's faces. One work-item per
 // cell and channel.
 // cells     escaped power per cell in fixed point, from follow_lamp (LampBeams.cl)
-// face_out  W, [channel][cell], added to
+// face_out  W, [channel][cell]; the kernel adds to it
 // watts     power of the lamp, W, [channel]
 __kernel void add_fixed_cells(
   const __global long* cells, __global float* face_out, ulong first, ulong stride, float4 watts)
@@ -232,7 +232,7 @@ __kernel void add_fixed_cells(
 
 // Adds a lamp's net flux to that of the deposit. One work-item per voxel and channel.
 // fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
-// flux  W length, [channel][x, y, z][voxel], added to
+// flux  W length, [channel][x, y, z][voxel]; the kernel adds to it
 __kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
   float4 units, const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
 {
@@ -248,7 +248,7 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
 
 // Adds a lamp's first moments to those of the deposit. One work-item per voxel and channel.
 // fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
-// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][voxel], added to
+// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][voxel]; the kernel adds to it
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
   ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal,
   const __global float* gains)

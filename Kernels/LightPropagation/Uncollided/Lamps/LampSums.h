@@ -6,10 +6,10 @@
 namespace tyndall
 {
 /// Sums of a lamp's deposits, as fractions of the traced power (LampOnGrid::Share). They are in 64-bit fixed point, so
-/// that they do not depend on the order of their terms (numerics.md, Eq. (35)). Per voxel: the path integral; first
-/// moments and net flux, if the deposit has them; for a rectangle, its path integral in vacuum; [path, 3 first moments,
-/// 3 of flux, ...][voxel]. If the deposit has faceOut, also the power that escapes through each cell of the grid's
-/// faces.
+/// that they do not depend on the order of their terms (numerics.md, Eq. (35)). Per voxel they are the path integral;
+/// first moments and net flux, if the deposit has them; for a rectangle, also its path integral in vacuum. The layout
+/// is [path, 3 first moments, 3 of flux, ...][voxel]. If the deposit has faceOut, also the power that escapes through
+/// each cell of the grid's faces.
 class LampSums
 {
 public:
