@@ -16,7 +16,7 @@
 
 namespace
 {
-/// Sessions whose server has ended, of which properties must not be requested. ParaView 5.11 does not check whether a
+/// Sessions whose server has ended. Their properties must not be requested. ParaView 5.11 does not check whether a
 /// reply to PullState arrived before it parses it: asking such a server for properties aborts the client.
 std::vector<vtkWeakPointer<vtkObject>>& LostSessions()
 {

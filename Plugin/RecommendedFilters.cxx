@@ -100,8 +100,8 @@ void Copy(vtkSMProperty* from, vtkSMProperty* to)
   to->Copy(from);
 }
 
-/// Whether a property of the recommending filter has the same meaning as the property of this name of a new filter. A
-/// list of settings to compare has not.
+/// Whether a property of the recommending filter has the same meaning as the property of the same name of a new filter.
+/// It has not if it is a list of settings to compare.
 bool IsShared(vtkSMProperty* from, vtkSMProperty* to)
 {
   auto* const list = vtkSMVectorProperty::SafeDownCast(from);

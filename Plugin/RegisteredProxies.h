@@ -44,8 +44,8 @@ inline vtkPVXMLElement* HintOf(vtkSMProxy* proxy, const char* name)
 
 /// Registers `notice` as observer of vtkCommand::RegisterEvent: `notice` is called for each proxy that is registered
 /// from then on, with a vtkSMProxyManager::RegisteredProxyInformation as call data.
-/// @param listening  whether `notice` is registered already: false before the first call, which sets it to true;
-///   further calls have no effect
+/// @param listening  whether `notice` is registered already; false before the first call. The first call sets it to
+///   true, further calls have no effect
 inline void FollowRegisteredProxies(bool& listening, void (*notice)(vtkObject*, unsigned long, void*, void*))
 {
   vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();

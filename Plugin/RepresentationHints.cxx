@@ -136,7 +136,7 @@ vtkCallbackCommand* FirstChange()
 }
 
 /// When the type of a representation that opened as Lit Volume is first changed, colours the representation by the
-/// array of the hint <ColoredBy>. Earlier, the colour bar would mislead, because Lit Volume does not use the colour
+/// array of the hint <ColoredBy>. Before that, a colour bar would mislead, because Lit Volume does not use the colour
 /// map.
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {

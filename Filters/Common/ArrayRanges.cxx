@@ -76,7 +76,7 @@ public:
   {
   }
 
-  /// Updates the extremes by the values of one block.
+  /// Updates the extremes with the values of one block.
   /// @param values  complete tuples of finite values
   void Add(const T* values, std::size_t count)
   {

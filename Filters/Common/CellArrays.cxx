@@ -190,8 +190,8 @@ void FollowFilterBefore(vtkImageData* image, Choice& choice)
   }
 }
 
-/// The array that is selected under the number `index` of SetInputArrayToProcess; if none is, the array that the filter
-/// upstream used in place of the default array `otherwise`, or else the default array.
+/// The array that is selected under the number `index` of SetInputArrayToProcess; if none is selected, the array that
+/// the filter upstream used in place of the default array `otherwise`; if there is no such array, the default array.
 /// @param image  the filter's input; null: the array of the filter upstream is not looked up
 Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {

@@ -75,9 +75,9 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 
 /// Calls ReadCells for the array that the user selected for number `index` of SetInputArrayToProcess, by name or by
 /// attribute. A selected point array takes precedence over a cell array of the same name. If the user selected nothing
-/// (SCALARS in VTK, "" in ParaView before it knows the input) or the default array `otherwise`, the function reads the
-/// array that the filter upstream used for this quantity (NoteChoices) or, without such a record, the array `otherwise`
-/// ("": the active scalars). An array selected by another name is never optional.
+/// (SCALARS in VTK, "" in ParaView before it knows the input), or selected the default array `otherwise`, the function
+/// reads the array that the filter upstream used for this quantity (NoteChoices) or, without such a record, the array
+/// `otherwise` ("": the active scalars). An array selected by another name is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
@@ -91,7 +91,7 @@ struct ArraysRead
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether all arrays that a filter selects are point arrays, and it selects at least one. The filter selects arrays by
+/// Whether a filter selects at least one array, and only point arrays. The filter selects arrays by
 /// SetInputArrayToProcess; if it selects the active array of an attribute type, the array must be announced by the
 /// input's information.
 /// @param chosen  default names of the selectable arrays, by index (VoxelArrays::chosen)

@@ -34,8 +34,7 @@ namespace tyndall
 {
 namespace
 {
-/// Key of vtkInformation, in a filter's information: axes of the medium (OwnAxes), in which the filter works, set by
-/// NoteOwnAxes.
+/// Key in a filter's information: the medium axes (OwnAxes), in which the filter works. NoteOwnAxes sets it.
 vtkInformationDoubleVectorKey* AxesOfFilter()
 {
   static auto* const key = vtkInformationDoubleVectorKey::MakeKey("OWN_AXES", "Tyndall");
@@ -44,8 +43,8 @@ vtkInformationDoubleVectorKey* AxesOfFilter()
 
 constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is oblique unless they are 0, 1 or -1
 
-/// Order in which Aligned() lists an image's values (cells or points): for each value of the image whose axes are the
-/// world axes, its index in the given image.
+/// Order of the values (cells or points) in the image that Aligned() makes, whose axes are the world axes: for each
+/// value its index in the given image.
 /// @param count  number of values along each image axis
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {

@@ -45,8 +45,7 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a port's information: the images of this port are pictures, which have no position in the scene
-/// (TakePictures).
+/// Key in a port's information: the port's images are pictures, which have no position in the scene (TakePictures).
 vtkInformationIntegerKey* ForPictures()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_PICTURES", "Tyndall");

@@ -51,8 +51,8 @@ struct VoxelArrays
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
 /// Whether a filter reads an image with one voxel around each point (PropertyRange.h, tyndallPointDataMacro), because
-/// it reads point arrays and no cell arrays. If the medium (port 0) is read by cells, an image at another port with as
-/// many points as the medium is read by cells, too.
+/// it reads point arrays and no cell arrays. If cell arrays of the medium (port 0) are read, an image at another port
+/// that has as many points as the medium is also read by cells.
 /// @param averaged  receives the names of point arrays that are averaged to cells
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
 
@@ -91,10 +91,10 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
 // every array is read as 0 there, the refractive index as 1 (ReadCells, ReadChosenCells). Their values may be anything,
 // NaN included, which is what ResampleToImage writes outside of its input.
 //
-// Duplicates (DUPLICATECELL) are ghost cells that another rank owns. If one process has the complete image, they are
-// ordinary cells of the medium, and their power counts once. If ranks run a filter together, each cell is taken from
-// the rank that owns it (WholeInputs.h). Duplicates are an error if one process streams the output in pieces: each
-// piece would be solved with cells of its neighbours, whose power would count twice.
+// Duplicates (DUPLICATECELL) are ghost cells that another rank owns. If one process has the complete image, duplicates
+// are ordinary cells of the medium. If ranks run a filter together, each cell is taken from the rank that owns it
+// (WholeInputs.h). Duplicates are an error if one process streams the output in pieces: each piece would be solved with
+// cells of its neighbours, whose power would count twice.
 //
 // Hidden and duplicate lights and photons are skipped: every rank requests all lights and photons, so that the original
 // of each duplicate is present.

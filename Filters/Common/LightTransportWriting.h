@@ -42,7 +42,7 @@ void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& v
 constexpr const char* ActivePartFact = "active_part";
 /// Name of field data of light from scattered photons: total number of scattering events. Missing: no scattering.
 constexpr const char* ScatteringsFact = "scatterings";
-/// Adds an array to the field data of a data object, under the name `name`.
+/// Adds an array called `name` to the field data of a data object.
 /// @param values  tuples of `components` values each
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
@@ -52,8 +52,8 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 /// one tuple for each face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the
 /// lower axis fastest.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
-/// Name of field data with one text for each array of the medium that the solver ignores: the array, and filters that
-/// use it.
+/// Name of field data with one text for each array of the medium that the solver ignores. The text names the array, and
+/// filters that use it.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
 /// face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the lower axis fastest.

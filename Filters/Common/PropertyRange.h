@@ -184,7 +184,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     return this->PointData;                                 \
   }
 
-/// The properties of a picture and of its camera, stored in the members of their names. ImageSize: columns and rows,
+/// The properties of a picture and of its camera, stored in members of the same names. ImageSize: columns and rows,
 /// pixels, valid from 1 on. CameraPosition and CameraFocalPoint: as in vtkCamera. CameraViewUp: direction that is
 /// upwards in the picture, valid if not parallel to the view direction. CameraViewAngle: angle between the picture's
 /// lower and upper edge, degrees, valid (0, 180). CameraSetOn (Viewing/CasterProperties.h) reads the camera.

@@ -18,9 +18,9 @@ std::uint64_t ReadableSize(const std::string& path);
 ///
 /// Symbolic links are followed: their target is replaced. An existing file's mode and, if the system allows it, its
 /// owner are kept; a new file has mode 0666 restricted by umask. If the file system supports unnamed files (O_TMPFILE),
-/// even a killed process leaves nothing behind; otherwise it may leave `.tyndall-<process>-<number>`, a short name
-/// however long that of the target is. If an existing file has several names (hard links), the other names keep its old
-/// content.
+/// even a killed process leaves nothing behind; otherwise it may leave a file `.tyndall-<process>-<number>`, whose name
+/// is short even if that of the target is long. If an existing file has several names (hard links), the other names
+/// keep its old content.
 ///
 /// Every member function throws InvalidInput that names the file and the cause.
 class WholeFile

@@ -28,8 +28,9 @@ PictureSize SizeOfHdr(const std::string& path);
 RadiancePicture ReadHdr(const std::string& path);
 
 /// Reads the size, or the pixels, of an OpenEXR picture (.exr) of half, float or integer numbers. Channels: R G B at
-/// the root or in the first layer that has them; or Y alone (grey); or Y, RY, BY. Scan lines or tiles (finest level);
-/// the first of several parts. The picture is the display window, black outside of the data window.
+/// the root or in the first layer that has them; or Y alone (grey); or Y, RY, BY. The picture may be stored in scan
+/// lines or in tiles (the finest level is read); the first of several parts is read. The result is the display window,
+/// black outside of the data window.
 /// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfExr(const std::string& path);
 RadiancePicture ReadExr(const std::string& path);

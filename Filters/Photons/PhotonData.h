@@ -12,16 +12,16 @@ namespace tyndall
 {
 class Communicator;
 
-/// Writes photons as polydata: points (double), with one vertex each, point data `direction` (3, unit), `power` (3,
-/// RGB, W), `weight` (1: ratio of the photon's power to its power if the photons of its light were evenly distributed),
-/// `light` (1: number of the photon's light, -1 the environment or sky) and `batch` (1: number of the photon's
-/// independent set). `direction` is the active vectors, so that glyphs point along it. Field data `photon_box`: bounds
-/// of the box that the photons were made for, in the axes of the box.
+/// Writes photons as polydata: points (double) with one vertex each, and point data: `direction` (unit vector), `power`
+/// (red, green, blue, W), `weight` (ratio of the photon's power to its power if the photons of its light were evenly
+/// distributed), `light` (number of the photon's light, -1 for the environment or sky) and `batch` (number of the
+/// photon's independent set). `direction` is the active vectors, so that glyphs point along it. Field data
+/// `photon_box`: bounds of the box that the photons were made for, in the axes of the box.
 /// @param box  box that the photons were emitted for
 /// @param axes  axes of the box and of the emitted photons; photons are written in the scene's coordinates
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes& axes, vtkPolyData* output);
 
-/// Text of the warning that the box for which photons were emitted (field data `photon_box`) is not the medium's; empty
+/// Text of the warning that the photons were emitted for another box (field data `photon_box`) than the medium's; empty
 /// if the boxes are equal or `photon_box` is missing.
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 
@@ -31,8 +31,8 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 /// @throws InvalidInput if an array is missing or has another shape, or a batch is not a whole number from 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons, const OwnAxes& axes);
 
-/// Reads this rank's share of the photons: all of its input if inputs differ between ranks; if all ranks have the same
-/// input, a contiguous range of it. Collective.
+/// Reads this rank's share of the photons: its complete input if inputs differ between ranks; a contiguous range of its
+/// input if all ranks have the same. Collective.
 /// @param axes  axes to whose coordinates the photons are transformed
 /// @throws InvalidInput as ReadPhotons, on all ranks if on any
 std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given, const OwnAxes& axes);

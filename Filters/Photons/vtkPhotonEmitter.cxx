@@ -40,8 +40,8 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-/// Declares the medium's arrays as read, although the emitter reads none. The box then has voxels around points, or
-/// between them, exactly if it has in the filters that do read these arrays (PointData).
+/// Declares the medium's arrays as read, although the emitter reads none. The emitter then places voxels around points,
+/// or between points, as the filters do that read these arrays (PointData).
 int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
 {
   const int done = this->Superclass::FillInputPortInformation(port, information);

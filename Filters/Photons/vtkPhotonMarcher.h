@@ -120,12 +120,12 @@ public:
   /// Domain decomposition over MPI ranks. WHOLE: the first rank holds the whole medium and all photons. BLOCKS: each
   /// rank holds its piece, a halo of the refractive index, and its share of the photons. A photon that leaves the
   /// piece, scattered or not, continues on the neighbouring rank with its full state (numerics.md, section 12.6). The
-  /// light is bitwise that of one rank; in the published scheme except for the packing loss, which is not reproducible
-  /// even on one rank. If all ranks have the same photons, they are divided among the ranks; else the photons are those
-  /// of rank 0, then rank 1, and so on. An octree whose pieces differ from the medium's is an error with BLOCKS. Light
-  /// that EmptySpace would store by bricks is stored by voxels. AUTOMATIC_DECOMPOSITION (default): BLOCKS if each of
-  /// several ranks is asked for its own piece and the scene allows it; else WHOLE. WHOLE also if EmptySpace asks for
-  /// bricks, unless the whole medium exceeds the machine's available memory.
+  /// light is bitwise that of one rank; in the published scheme it differs by the packing loss, which is not
+  /// reproducible even on one rank. If all ranks have the same photons, they are divided among the ranks; else the
+  /// photons are those of rank 0, then rank 1, and so on. An octree whose pieces differ from the medium's is an error
+  /// with BLOCKS. Light that EmptySpace would store by bricks is stored by voxels. AUTOMATIC_DECOMPOSITION (default):
+  /// BLOCKS if each of several ranks is asked for its own piece and the scene allows it; else WHOLE. WHOLE is also
+  /// chosen if EmptySpace asks for bricks, unless the whole medium exceeds the machine's available memory.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 

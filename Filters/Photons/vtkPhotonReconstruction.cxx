@@ -60,8 +60,8 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   return settings;
 }
 
-/// Array `fluence_batches` of zeros, in place of the array that the marcher does not write if the light is zero
-/// everywhere; empty if `light` is above 0 in any voxel.
+/// Array of zeros that replaces `fluence_batches`: the marcher does not write that array if the light is zero
+/// everywhere. Empty if `light` is above 0 in any voxel.
 std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int batches)
 {
   const std::size_t count = voxels * static_cast<std::size_t>(light.Components());

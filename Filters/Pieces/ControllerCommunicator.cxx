@@ -27,7 +27,7 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  // Default and longest timeout for waiting on another rank, seconds. Three years, the longest, are still within the
+  // Default and longest timeout for waiting on another rank, seconds. The longest, three years, is still within the
   // range of the clock.
   constexpr double usual = 600.0, longest = 1e8;
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
@@ -175,8 +175,8 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-/// Message tags are reused after this number of communicators in one call of WorkOnAllRanks, and after this number of
-/// calls. The tags of CommunicatorOfFrame follow those of WorkOnAllRanks.
+/// Message tags are reused after Conversations communicators in one call of WorkOnAllRanks, and after Works calls. The
+/// tags of CommunicatorOfFrame follow those of WorkOnAllRanks.
 constexpr int Conversations = 64, Works = 16;
 int Work = 0, Conversation = 0, Frame = 0;
 

@@ -90,7 +90,7 @@ private:
 /// Collective. Parcels may have any length: DIY splits messages into parts of 2 GiB.
 ///
 /// DIY has no timeout, so ranks agree beforehand that none has failed (Communicator::Exchange). If a rank times out, or
-/// lacks memory for what it receives, it ends its process and MPI then ends all ranks, so that none waits forever.
+/// lacks memory for what it receives, it ends its process. MPI then ends all ranks, so that no rank waits forever.
 /// @param with      ranks to exchange with, other than this one
 /// @param parcels   one for each rank of `with`
 /// @param patience  timeout, seconds

@@ -41,8 +41,8 @@ namespace tyndall
 {
 namespace
 {
-/// Record of when and how a filter's last run failed, to avoid reporting the same error repeatedly: VTK runs a filter
-/// again on every update as long as its output does not cover the requested extent, which empty outputs never do, and
+/// Record of when and how a filter's last run failed, to avoid reporting the same error repeatedly. VTK runs a filter
+/// again on every update as long as its output does not cover the requested extent. Empty outputs never do, and
 /// ParaView makes several updates.
 class LastFailure
 {
@@ -262,8 +262,8 @@ void NoteRun(vtkAlgorithm* filter, bool succeeded, double seconds)
   }
 }
 
-/// Sends the list of skipped computations, and whether the outputs were cached ones, from the first rank, which has
-/// worked alone, to the other ranks. Collective.
+/// Sends the list of skipped computations, and whether the outputs were cached ones, from the first rank to the other
+/// ranks. The first rank has worked alone. Collective.
 void ShareRun(Communicator& ranks, vtkAlgorithm* filter)
 {
   std::string leftOut = LeftOutOfRun(filter);

@@ -59,8 +59,8 @@ struct WorkOnSubdomains
   /// ranks, to be called again on the first rank. Output 0 is cropped to the requested extent unless several ranks made
   /// it.
   std::function<bool(const PieceBlocks& pieces, vtkInformationVector** inputs)> work;
-  /// Sends the results that the filter keeps in its members (read-only properties) from the first rank, which has
-  /// worked alone, to the other ranks. Collective.
+  /// Sends the results that the filter keeps in its members (read-only properties) from the first rank to the other
+  /// ranks. The first rank has worked alone. Collective.
   std::function<void(Communicator& ranks)> shareResults;
   /// Whether each rank works on the complete inputs, instead of the first rank alone; worth it if the work takes less
   /// time than sending the outputs.

@@ -49,7 +49,7 @@ std::size_t CellsOf(const Extent& extent)
   return cells;
 }
 
-/// Smallest extent that contains all cells of an image which are not duplicates.
+/// Smallest extent that contains all cells of an image except duplicates.
 Extent OwnExtentOf(vtkImageData* image, const Extent& all)
 {
   vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();

@@ -24,8 +24,8 @@ namespace tyndall
 {
 class Communicator;
 
-/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together. (Ranks that
-/// each request the complete input could also be independent.)
+/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together. They cannot
+/// infer it, because independent ranks, too, may each request the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// Determines in RequestData whether ranks run the filter together.

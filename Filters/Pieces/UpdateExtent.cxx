@@ -156,7 +156,8 @@ struct Part
 {
   bool isOfRank = false; ///< whether the part is one recorded by NotePartsOfRanks
   bool divided = false;
-  /// Requested extents. Empty extents mean that nothing is requested if `divided`, else that the complete output is.
+  /// Requested extents. Empty extents mean that nothing is requested if `divided`, and that the complete output is
+  /// requested otherwise.
   AskedPiece piece;
 };
 

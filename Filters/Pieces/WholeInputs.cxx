@@ -328,8 +328,8 @@ vtkSmartPointer<vtkDataObject> WholeOf(vtkMultiProcessController* ranks, vtkData
   return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named, where);
 }
 
-/// Checks that input images are complete if only one of several ranks updates: there are no ranks to gather the missing
-/// pieces from.
+/// Checks that input images are complete if only one of several ranks updates. It cannot gather missing pieces, because
+/// the other ranks do not take part.
 void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
@@ -349,8 +349,8 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// Smallest extent that contains all points of an image that are no duplicates, by the flags vtkGhostType of points or,
-/// without these, of cells.
+/// Smallest extent that contains all points of an image that are no duplicates, by vtkGhostType of points or, if that
+/// is missing, of cells.
 Extent OwnPointsOf(vtkImageData* image)
 {
   Extent extent;

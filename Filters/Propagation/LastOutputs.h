@@ -55,7 +55,7 @@ public:
   static Key KeyOf(vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports);
 
   /// Copies the cached outputs to `outputs` if they were computed for this key.
-  /// @return whether the outputs were copied; if not, the cached outputs are available to GiveBefore only
+  /// @return whether the outputs were copied; if not, only GiveBefore can use the cached outputs from now on
   bool GiveBack(const Key& key, vtkInformationVector* outputs);
 
   /// Caches the outputs of a solve.

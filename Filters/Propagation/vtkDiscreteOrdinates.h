@@ -132,8 +132,8 @@ public:
 
   ///@{
   /// Acceleration of source iteration (conservative scheme, if MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION
-  /// (default). Directions of a spiral are not accelerated, nor are the light of input 3 and anisotropic scattering by
-  /// MATRIX or SINGULAR_VALUES.
+  /// (default). There is no acceleration with directions of a spiral, for the light of input 3, or for anisotropic
+  /// scattering by MATRIX or SINGULAR_VALUES.
   tyndallRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   ///@}
 

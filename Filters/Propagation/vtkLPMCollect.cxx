@@ -53,8 +53,8 @@ int ReadCount(vtkImageData* image, const char* name)
   return static_cast<int>(value);
 }
 
-/// Settings with which vtkLPMPropagate made an image, read from the image's field data, and number of channels of the
-/// image's arrays T (`T_xmin` to `T_zmax`, the deposits of the rays).
+/// Settings with which vtkLPMPropagate made an image (read from the image's field data), and the number of channels of
+/// the image's arrays T (`T_xmin` to `T_zmax`, the deposits of the rays).
 struct Told
 {
   tyndall::PropagationSettings settings;

@@ -107,11 +107,11 @@ public:
   ///@}
 
   ///@{
-  /// Whether to solve for a preview, while lights are moved: on a grid with half as many voxels along each axis (halved
-  /// again if that grid is large; LeftOut reports its size), with few directions and a tolerance of a few percent. The
-  /// output has only `fluence` and `fluence_direct`, interpolated linearly between the centres of the coarse voxels.
-  /// Quality, TargetError and WarmStart are not read for a preview. With Decomposition BLOCKS each rank averages its
-  /// piece, and the first rank with voxels solves on the coarse grid for all ranks. Default off.
+  /// Whether to solve for a preview, for example while lights are moved: on a grid with half as many voxels along each
+  /// axis (halved again if that grid is large; LeftOut reports its size), with few directions and a tolerance of a few
+  /// percent. The output has only `fluence` and `fluence_direct`, interpolated linearly between the centres of the
+  /// coarse voxels. Quality, TargetError and WarmStart are not read for a preview. With Decomposition BLOCKS each rank
+  /// averages its piece, and the first rank with voxels solves on the coarse grid for all ranks. Default off.
   tyndallFlagMacro(Preview);
   ///@}
 

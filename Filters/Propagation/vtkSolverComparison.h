@@ -140,14 +140,15 @@ public:
   ///@{
   /// Whether diffusion on lattices of 18 and of 6 directions is compared, solved by vtkLatticeBoltzmannLighting with
   /// its default settings. Default off. Skipped if voxels are not cubes. If light is refracted, photons compute the
-  /// uncollided light of the lattice, for each PhotonCount, and the lattice is skipped whenever MonteCarlo is.
+  /// uncollided light of the lattice, for each PhotonCount, and the lattice is skipped in the same cases as
+  /// MonteCarlo.
   tyndallFlagMacro(LatticeBoltzmann);
   ///@}
 
   ///@{
   /// Whether a chain of two methods is compared: photons along bent rays compute the uncollided light, for each
-  /// PhotonCount, and light propagation maps scatter it, along straight rays. Default off. Skipped whenever MonteCarlo
-  /// is.
+  /// PhotonCount, and light propagation maps scatter it, along straight rays. Default off. Skipped in the same cases
+  /// as MonteCarlo.
   tyndallFlagMacro(PhotonsThenMaps);
   ///@}
 

@@ -39,7 +39,7 @@ constexpr std::size_t NumbersOfMaterial = 9;
 
 /// Name of the cell array of material numbers. The default array is selected by an empty name or, in ParaView's panel,
 /// "(by name)".
-/// @throws InvalidInput if the selected array is a point array, or another array than the default that no mesh has
+/// @throws InvalidInput if the selected array is a point array, or if no mesh has it and it is not the default array
 std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
 {
   vtkInformation* chosen = filter->GetInputArrayInformation(0);

@@ -163,7 +163,7 @@ public:
 
   ///@{
   /// Number of fine voxels per edge of a voxel. Occupancy varies continuously with the position of the surface for any
-  /// factor; the factor determines how well it resolves edges and curvature of the surface. Default 4, valid [1, 16].
+  /// factor; a larger factor resolves edges and curvature of the surface better. Default 4, valid [1, 16].
   tyndallRangeMacro(SupersamplingFactor, int, 1, 16);
   ///@}
 

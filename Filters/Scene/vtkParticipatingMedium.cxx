@@ -251,7 +251,7 @@ std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tynd
   return relative;
 }
 
-/// Extreme values of an array in the image and on its border. By these values a level set is recognised.
+/// Extreme values of an array, in the image and on its border, by which a level set is recognised.
 struct Signs
 {
   double lowest = AnyValue, highest = -AnyValue, lowestOnBorder = AnyValue;

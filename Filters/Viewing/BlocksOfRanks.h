@@ -43,8 +43,8 @@ public:
   const std::vector<VoxelBox>& Given() const { return this->Pieces.HeldByRanks(); }
   /// Whether the boxes `held`, one per rank, equal the boxes of the input images (Given).
   bool AreGiven(const std::vector<VoxelBox>& held) const;
-  /// Voxels that each rank needs to render its block (HeldBox), by rank. If the input image of every rank contains its
-  /// needed voxels, returns the voxels of the input images (Given) instead.
+  /// Voxels that each rank needs to render its block (HeldBox), by rank. If the input image of every rank contains the
+  /// voxels that the rank needs, returns the voxels of the input images (Given) instead.
   /// @param moments, surface  whether the light has angular moments, or radiance at the faces
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 
@@ -60,8 +60,9 @@ private:
   GridBlock OwnBlock; ///< block of this rank; without voxels if this rank has none, or if the domain is serial
 };
 
-/// Whether the ranks can render their blocks together: the blocks tile one grid, all ranks are able, their properties
-/// are equal, and so are the arrays of all ranks with a block. Collective, the same on all ranks.
+/// Whether the ranks can render their blocks together: the blocks tile one grid, every rank can render its block, the
+/// properties of all ranks are equal, and so are the arrays of all ranks with a block. Collective, the same on all
+/// ranks.
 /// @param able        whether this rank can render its block; true if it has none
 /// @param properties  the filter's properties as numbers
 /// @param arrays      hash of the arrays and field data of this rank's block (ArraysInANumber)

@@ -58,8 +58,8 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// Pixels to blend over objects that the pixel's ray missed because they cover only part of the pixel, such as a line
-/// thinner than a pixel: the medium attenuates the object, and the object hides the background.
+/// Pixels to blend over objects that cover only a part of a pixel, such as a line thinner than a pixel, and that the
+/// pixel's ray missed. The medium attenuates the object, and the object hides the background.
 /// @param pixels  pixels of PixelsOf with background
 std::vector<std::uint8_t> PixelsBeforeObjects(
   std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)
@@ -116,7 +116,7 @@ std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume
   }
 }
 
-/// Distance between rays that all ranks use, pixels: the largest that any rank requests. Collective.
+/// Distance between rays, pixels, for all ranks: the largest distance that any rank requests. Collective.
 /// @param alike  numbers that must be the same on all ranks
 /// @param apart  distance that this rank requests; 0 if it cannot render
 /// @return nothing, on all ranks, if `alike` differs between ranks or a rank cannot render

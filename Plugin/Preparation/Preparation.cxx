@@ -50,8 +50,8 @@ Note NoteOfAll()
   return { tyndall::PreparePocl().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
-/// Scenes shared by two processes: each process takes the next scene that none has taken. Threads would not do instead:
-/// OpenCL compilers hold a lock, so that the threads of a process compile one after another.
+/// Scenes shared by two processes: each process takes the next scene that none has taken. Threads cannot replace
+/// processes, because OpenCL compilers hold a lock, and the threads of a process would compile one after another.
 class ScenesInTurn
 {
 public:

@@ -122,7 +122,7 @@ template <typename Number>
 class Numbers
 {
 public:
-  /// A voxel's value consists of the components number `first` and higher of the array.
+  /// A voxel's value consists of the array's components from number `first` on.
   Numbers(vtkDataArray* array, int first)
     : Values(array->GetVoidPointer(0))
     , Components(array->GetNumberOfComponents())
@@ -163,7 +163,7 @@ private:
 };
 
 /// Makes the value of a voxel, a scalar or a vector, from the numbers of its components.
-/// @param number  returns the number of the component with a given index
+/// @param number  function that returns the number in the component of a given index
 template <typename Value, typename Get>
 Value VoxelFrom(const Get& number)
 {
@@ -363,7 +363,8 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 
 namespace
 {
-/// Interpolates a grid within a box of voxels: linearly between voxel centres, for integers the nearest voxel.
+/// Interpolates a grid within a box of voxels: linearly between voxel centres; integers are taken from the nearest
+/// voxel.
 template <typename K>
 class BoxSampler
 {

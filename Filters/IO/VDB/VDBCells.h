@@ -27,8 +27,8 @@ namespace tyndall
 void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const std::string& name,
   const openvdb::CoordBBox& box, vtkImageData* image);
 
-/// Resamples a grid at the cell centres of `image`: linearly between voxel centres, for integers from the nearest
-/// voxel, and with the background outside of the grid. Field data are added as by AddGridCells.
+/// Resamples a grid at the cell centres of `image`: linearly between voxel centres; integers are taken from the nearest
+/// voxel. Outside of the grid, values are the background. Field data are added as by AddGridCells.
 /// @param cells  image of the voxels of `box`, as made by AddGridCells
 void AddResampled(vtkImageData* cells, const VDBGrid& grid, const openvdb::CoordBBox& box, vtkImageData* image);
 
@@ -42,8 +42,8 @@ struct VoxelOptions
 {
   /// Value of inactive voxels, unless field data `background` of the array state another value.
   double Background = 0.0;
-  /// Largest difference between numbers that count as equal: from the background, or from the first value of a block of
-  /// 8^3 voxels.
+  /// A value counts as equal to the background, or to the first value of its block of 8^3 voxels, if it differs by no
+  /// more than this.
   double Tolerance = 0.0;
   bool Half = false; ///< whether real numbers are stored in 16 bits; numbers that do not fit are an error
   /// Flag of each cell, not 0 if the cell becomes background whatever its value; null: no such cells.

@@ -52,7 +52,7 @@ bool ReadTransform(VDBBytes& bytes, VDBGrid& grid);
 /// Reads .vdb files that may be truncated or corrupt.
 ///
 /// OpenVDB trusts its files: sizes of strings, compressed blocks and masks in the file determine how much it allocates
-/// and how far it writes (a compressed block that claims to be longer than its node overruns the node), and a buffer
+/// and how far it writes. A compressed block that claims to be longer than its node overruns the node, and a buffer
 /// whose delayed load fails is freed twice. Therefore io::File is not used. This class first walks through the file and
 /// checks every number that OpenVDB would trust against the file's size and the node it belongs to; then OpenVDB reads
 /// the trees from the checked positions. Opening a file walks the topology, which tells where active voxels are, and

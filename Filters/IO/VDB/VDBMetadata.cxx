@@ -95,7 +95,7 @@ bool InsertIfOfKind(K, MetaMap& map, const std::string& key, vtkAbstractArray* f
 }
 
 /// Adds metadata `key` from a VTK array, if the array holds one 64-bit integer of any VTK type.
-/// @return whether it does
+/// @return whether the array holds such a number
 bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
 {
   auto* array = vtkDataArray::SafeDownCast(found);

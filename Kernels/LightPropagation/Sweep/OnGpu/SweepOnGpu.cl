@@ -198,7 +198,7 @@ static void put_escaped(
 // before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
 // after     power of the rays at the voxel that they enter in the next plane, W, laid out as `before`
 // entering  incident power, W, [ray][channel]: through the face normal to u, through the face normal to v, and where
-// rays start
+//           rays start
 // directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
 // functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
 // escaped   power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face] for each lane

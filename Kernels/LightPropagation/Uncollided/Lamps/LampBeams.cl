@@ -561,8 +561,8 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 //       as a fraction of the traced power times length; if MOMENTS, path times distance along x, y and z; if NET_FLUX,
 //       path times direction along x, y and z; if VACUUM, the path that light would have in vacuum before it wraps
 //       around an axis, and if AROUND the actual path of that light
-// cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT beams states of the beams, if
-// IN_BLOCK; updated when a beam has left the block or ended
+// cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
+// beams states of the beams, if IN_BLOCK; updated when a beam has left the block or ended
 // first, count  index of the first row (IN_BLOCK: beam) of this launch, and number of rows or beams
 // sums  tallies, [row or beam][LampRowSums], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
