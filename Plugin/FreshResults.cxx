@@ -16,8 +16,8 @@
 
 namespace
 {
-/// Sessions whose server has ended. Their properties must not be requested. ParaView 5.11 does not check whether a
-/// reply to PullState arrived before it parses it: asking such a server for properties aborts the client.
+/// Sessions whose server has ended. Their properties must not be requested. ParaView 5.11 parses the reply to PullState
+/// without checking that it arrived: asking such a server for properties aborts the client.
 std::vector<vtkWeakPointer<vtkObject>>& LostSessions()
 {
   static std::vector<vtkWeakPointer<vtkObject>> sessions;

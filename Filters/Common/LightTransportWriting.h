@@ -65,10 +65,10 @@ constexpr const char* FaceAlbedoFact = "face_albedo";
 /// angular moments.
 constexpr const char* FaceRadianceFact = "face_radiance";
 
-/// Names of cell arrays with scattered light. MomentsArray: its angular moments (LightField::scatteredMoments).
+/// Names of cell arrays. MomentsArray: angular moments of scattered light (LightField::scatteredMoments).
 /// StraightOnArray: fraction of scattering that the solver treats as unscattered (LightField::straightOn).
-/// LampsApartFact: name of field data, the lamps whose first-collision source the moments exclude; one tuple for each
-/// lamp: type, position, direction, power, size, angle.
+/// LampsApartFact: name of field data with the lamps whose first-collision source the moments exclude, one tuple for
+/// each lamp: type, position, direction, power, size, angle.
 constexpr const char* FluenceErrorArray = "fluence_error"; ///< standard error of `fluence`, W/length^2
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";

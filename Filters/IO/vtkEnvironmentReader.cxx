@@ -47,7 +47,8 @@ Kind KindOf(const std::string& path)
   return text == "\x76\x2f\x31\x01" ? Kind::OpenExr : text.compare(0, 2, "#?") == 0 ? Kind::Radiance : Kind::Unknown;
 }
 
-/// File type by content. If the content is not recognised, the type by extension, whose reader then reports the error.
+/// Type of a file according to its content. If the content is not recognised, the type is that of the extension, and
+/// its reader reports the error.
 Kind KindToRead(const char* path)
 {
   tyndall::Require(path != nullptr && path[0] != '\0', "No file: set FileName.");

@@ -89,7 +89,7 @@ public:
   ///@}
 
   ///@{
-  /// With Scheme PUBLISHED: photon weight per pyramid level, dimensionless: the level of a voxel is at most its mean
+  /// With Scheme PUBLISHED: photon weight per pyramid level, dimensionless. The level of a voxel is at most its mean
   /// photon weight divided by WeightStep. Default 0: 0.999 times the mean weight of lit voxels; valid [0, infinity).
   tyndallRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   ///@}

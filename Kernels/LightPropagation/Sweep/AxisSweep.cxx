@@ -273,7 +273,7 @@ const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
   return this->FaceCells->Handle();
 }
 
-/// Adds the escaped power per cell, summed by this sweep, to Deposit::faceOut.
+/// Adds to Deposit::faceOut the escaped power per cell that this sweep has summed.
 void AxisSweep::TakeFaceCells(const Deposit& to)
 {
   cl::Kernel kernel = this->TheDevice.Kernel("take_face_cells", kernel_source::SweepMaps, ExactOption(this->TheDevice));
@@ -294,7 +294,7 @@ void AxisSweep::SumMaps()
   this->RunOnMaps("map_power", nullptr, false, this->RowsOfMaps(), this->Sums);
 }
 
-/// Power of the rays in the maps per sense of marching, W, from the sums that SumMaps computed.
+/// Power of the rays in the maps, W, for each sense of marching, from the sums of SumMaps().
 std::array<Rgb, 2> AxisSweep::PowerInMaps() const
 {
   std::array<Rgb, 2> power = {};

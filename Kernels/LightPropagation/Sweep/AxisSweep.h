@@ -83,7 +83,7 @@ private:
   /// Escaped power per cell of the box's faces, W, [work-item][channel][cell]; one array [channel][cell] if all
   /// work-items share the cells.
   std::optional<ExactValues> FaceCells;
-  /// Power of the rays, W, summed over rows of the maps, [sense of marching][bundle][row][channel].
+  /// Power of the rays, W, summed over each row of the maps, [sense of marching][bundle][row][channel].
   Buffer<float> Sums;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> FirstCrossings;

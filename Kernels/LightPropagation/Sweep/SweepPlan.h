@@ -25,7 +25,7 @@ struct SweepDescription
   bool netFlux = false;
   /// Whether the power that enters each voxel through each of its faces is summed
   bool partialCurrents = false;
-  /// Values of the angular functions in the bundles' directions, must outlive the plan; null: no angular moments,
+  /// Values of the angular functions in the bundles' directions; must outlive the plan. Null: no angular moments,
   /// fluence only
   const AngularValues* angular = nullptr;
   MomentPlaces moments = {}; ///< memory layout of the angular moments
@@ -57,7 +57,7 @@ struct SweepPlan : SweepDescription
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
   EachWay eachWay = {}; ///< number of floats of each array for one sense of marching
-  /// Values of the angular functions (BundleInfo::coefficients), those of rays that march forward first
+  /// Values of the angular functions (BundleInfo::coefficients), first those for rays that march forward
   std::vector<float> coefficients;
   FunctionOrder order; ///< order in which this marching axis stores the angular functions: by parity along u and v
   /// Whether the array of moments holds each row of a plane contiguously, so that rows need not be packed (copied to
@@ -72,8 +72,8 @@ struct SweepPlan : SweepDescription
   std::vector<cl_int2> schedule;
   int launches = 0;
   double secondsPerLaunch = 0.0; ///< upper estimate of the time of a launch on a slow core, s
-  /// Number of laps around a short periodic axis in which rays start, so that the axis is long enough for their pattern
-  /// of moves; else 1
+  /// Number of laps around the axis in which rays start. Above 1 only on a periodic axis that is too short for the
+  /// rays' pattern of moves
   int laps = 1;
   /// Range of planes (first, end) that each unit of work crosses in each launch when rays wrap around a periodic axis,
   /// [launch][unit of work]; only one unit of work runs in each launch
@@ -97,9 +97,9 @@ struct SweepPlan : SweepDescription
   /// Path integral that a unit source in a voxel causes within that voxel, [unit of work][plane].
   /// @param lapPlanes  number of planes that the rays have crossed at the start of this lap around a periodic axis
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
-  /// Offset of the values of each angular function within a group of moments (those of MomentGroup voxels along x,
-  /// which are stored together; MomentPlacesShared.h), for the functions in this axis's order. 0 for the first
-  /// function, which is stored elsewhere, and if there are no angular moments.
+  /// For each angular function, in this axis's order: offset of its values within a group of moments. A group has the
+  /// moments of MomentGroup voxels along x (MomentPlacesShared.h). The offset is 0 for the first function, which is
+  /// stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;

@@ -29,8 +29,8 @@ enum
   /// Rows in a tile of chained planes (planes that a bundle crosses together, row by row); a tile stays in the cache
   /// while all bundles cross it
   RowsOfChain = 32,
-  /// Number of rows of a plane that scratch memory holds for chained planes, a power of two: those of a tile, and those
-  /// by which the last stage of the chain lags behind the first stage
+  /// For chained planes, scratch memory holds this number of rows of a plane, a power of two. It has room for a tile,
+  /// and for the rows by which the last stage of the chain lags behind the first stage
   RowsOfChainKept = 64,
   /// In chained planes (crossed together, row by row), rows of a map (powers of rays) are prefetched this number of
   /// rows ahead
@@ -148,7 +148,7 @@ typedef struct
   /// Number of planes packed (copied to scratch) before any of them is crossed: a multiple of `block`
   int together;
   int chained; ///< number of planes in a chain, which a bundle crosses together, row by row
-  /// Number of rows in a tile, which all bundles cross in turn; 0: each bundle crosses all rows at once
+  /// Number of rows in a tile, which all bundles cross one after another; 0: each bundle crosses all rows at once
   int tile;
   float vacuum; ///< sigma_t used instead of 0 in vacuum, 1/length; so small that exp(-tau) is 1 in float
   float thin;   ///< sigma_t below which the polynomial `meanLength` holds on all segments, 1/length

@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-/// Boundary source along a set of directions (numerics.md, Eq. (31)): incident radiance, the sum of the emission of the
+/// Boundary source along a set of directions (numerics.md, Eq. (31)). Its radiance is the sum of the emission of the
 /// faces, the sky and the environment. The peaks of the environment are excluded; they are treated as lamps
 /// (EnvironmentPeaks.h).
 class BoundaryLight

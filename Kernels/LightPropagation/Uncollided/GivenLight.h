@@ -15,7 +15,7 @@ namespace tyndall
 class GivenLight : public UncollidedSource
 {
 public:
-  /// @param image, medium, scattering  in the units of power and length and the channels of the solve
+  /// @param image, medium, scattering  with the channels and the units of power and length of the solve
   ///   (PropagationProblem); must outlive this object
   GivenLight(const UncollidedImage& image, const Medium& medium, const TruncatedScattering& scattering);
 

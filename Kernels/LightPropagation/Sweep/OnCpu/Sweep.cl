@@ -520,7 +520,7 @@ static void place_planes(struct plane_place* places, const swept_volume* volume,
   }
 }
 
-// Planes [i, i + count) of `packed`, in the order in which rays cross them.
+// Planes i to i + count - 1 of `packed`, counted in the order in which rays cross them.
 static packed_planes part_of(const packed_planes* packed, const swept_volume* volume, int i, int count)
 {
   const PlaneInfo* layout = &volume->info->planes;

@@ -66,7 +66,8 @@ typedef struct
 
 // For one channel and a vector of voxels, carries the rays of all directions (members) of a bundle through one segment,
 // i.e. through one voxel each.
-// own_path  path integral that a unit source in a voxel causes within that voxel, times the rays' cosine to the axis
+// own_path  path integral that a unit source in a voxel causes within that voxel, times the cosine of the angle between
+//           the rays and the marching axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
   int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
 {
@@ -302,7 +303,8 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
 }
 
 #if FACES
-// Adds the light incident per cell of the faces normal to u to the columns beside row y.
+// Fills the columns beside row y with the power of the rays that enter through the faces normal to u, including the
+// light incident per cell.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int s, __global float* out)
 {
@@ -361,7 +363,7 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 }
 #endif
 
-// Adds the power that enters the voxels of row y through each face to the partial currents (SweepPartialCurrents.cl).
+// Adds to the partial currents the power that enters the voxels of row y through each face (SweepPartialCurrents.cl).
 // Rays of all directions that enter through the same face are summed first.
 // @param own  rays of row y before the move
 static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __global float** in,
@@ -493,8 +495,8 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
     }
   }
   go_to_plane(state, 0);
-  // If v is periodic, the first rows are crossed again as ghost rows beyond the last row. Their rays are copied there,
-  // because the originals will have been overwritten by then.
+  // If v is periodic, the first rows are crossed again as ghost rows beyond the last row. Their rays are copied there
+  // in advance, because the originals are overwritten before that.
   for (int i = 0; PERIODIC_V && begins && i < (chain->stages - 1) * BLOCK; ++i)
   {
     map[state->sizeV * BLOCK + i] = map[(i / BLOCK % state->sizeV) * BLOCK + i % BLOCK];
@@ -568,7 +570,7 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 #endif
 }
 
-// Carries the rays of a bundle through a chain of planes, with all stages of all planes row by row, so that rays are
+// Carries the rays of a bundle through a chain of planes. All stages of all planes proceed row by row, so that rays are
 // read from the map and written to it only once.
 //
 // @param planes   number of planes; 1 if CHAINED is 0

@@ -57,7 +57,7 @@ public:
 private:
   Device& TheDevice;
   const SweepPlan& Plan;
-  /// Incident power, W: the values `outside` of SetBorder() for both senses of marching, then its values `radiance`
+  /// Incident power, W: the argument `outside` of SetBorder() for both senses of marching, then its argument `radiance`
   Buffer<float> Border;
   bool BorderIsClear = false;
   Buffer<float> Left, Coefficients;

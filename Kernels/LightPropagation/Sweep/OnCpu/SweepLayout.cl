@@ -1,7 +1,7 @@
 // Memory layout of a sweep on CPUs, shared by the files that include this one. The host defines
 //   REAL_WIDTH  number of floats in a vector: 4, 8 or 16
 //   CHANNELS  number of channels that share sigma_t: 1 or 3
-//   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
+//   ROW       floats in a padded row; the padding between the voxels of two rows is their border
 //   ANGULAR   1: light is represented by angular moments; 0: fluence only
 //   BEAMS     number of sources with their own angular distribution, besides the moments; if ANGULAR
 //   NET_FLUX  1: the net flux is computed
@@ -46,8 +46,8 @@
 // if rays that enter or leave sideways are stored for each plane, or if rows wrap around a periodic axis.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
 // BY_ROW is the attribute of functions that are called at most once per row. They are not inlined, because inlining in
-// unrolled loops makes compilation a third slower. If planes may be chained, they may be inlined, because calls would
-// cost 10% of a sweep with 64 voxels per row.
+// unrolled loops makes compilation a third slower. If planes may be chained, the compiler may inline them, because
+// calls would cost 10% of a sweep with 64 voxels per row.
 #if CHAINED
 #define BY_ROW
 #else
@@ -69,7 +69,7 @@
 // Index, in a row of moments, of the moment of voxel x for the second angular function; `higher` is the number of
 // functions from the second on. The order is [group][function][voxel of the group] (MomentPlacesShared.h).
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
-// Number of floats of a channel's row in the volume's array of moments, all functions from the second on.
+// Number of floats in a row of one channel, in the volume's array with the moments of all functions from the second on.
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
 #endif
 
@@ -111,7 +111,8 @@ static bool any_lane(integer mask)
   return (two.x | two.y) != 0;
 }
 
-// Binary logarithm of the number of voxels in a segment of a row: one vector or, in longer rows, several vectors.
+// Binary logarithm of the number of voxels in a segment of a row. A segment is one vector or, in longer rows, several
+// vectors.
 static int segment_bits(int width)
 {
   int bits = 2;

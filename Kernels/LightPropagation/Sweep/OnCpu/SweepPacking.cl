@@ -238,7 +238,7 @@ static int words_of_planes(const PlaneInfo* layout, const __global int* words, i
   return all;
 }
 
-// Sets the moments of packed path integrals to 0, in rows that are not empty in all planes.
+// Sets the moments of packed path integrals to 0, except in rows that are empty in all planes.
 static BY_ROW void clear_moments(const SweepInfo* info, const __global int* words, int count, __global float* path)
 {
   const int size = info->planes.sizeV, floats = info->packedMoments;

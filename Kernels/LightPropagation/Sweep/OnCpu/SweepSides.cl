@@ -18,8 +18,8 @@
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
-// Copies the power of the rays that enter through the face normal to v, in all directions of the bundle, to the row
-// state->outside.
+// Fills the row state->outside with the power of the rays that enter through the face normal to v, in all directions of
+// the bundle.
 static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)

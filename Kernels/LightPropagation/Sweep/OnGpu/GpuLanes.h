@@ -11,7 +11,7 @@
 
 namespace tyndall
 {
-/// Lane of a sweep plan: its rays that march in one sense. Its indices into buffers are not yet set.
+/// Lane of those rays of a sweep plan that march in one sense. Its indices into buffers are not yet set.
 /// @param way  sense of marching: 0 forward along the axis, 1 backward
 SweepLane LaneOf(const SweepPlan& plan, int way);
 

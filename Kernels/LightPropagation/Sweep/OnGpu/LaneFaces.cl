@@ -150,7 +150,7 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
   return power;
 }
 
-// Adds the power that leaves through the cells of the faces parallel to the marching axis to face_out, W. One work-item
+// Adds to face_out the power that leaves through each cell of the faces parallel to the marching axis, W. One work-item
 // per cell, side and channel.
 __kernel void leave_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int of_round,

@@ -34,15 +34,16 @@ public:
   /// Power of the rays that leave the planes sideways, W
   const Buffer<float>& Out() const { return this->SidesOut; }
 
-  /// Adds to `maps` (power of each ray) the light incident per cell of the faces where rays start, on open axes.
+  /// On open axes: adds to `maps` (power of each ray) the light incident through each cell of the faces where rays
+  /// start.
   /// @param first  index of the first channel's first value in faceIn and faceOut
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
   /// Computes the power of the rays that enter the planes sideways, from the light incident per cell. Call before the
   /// planes are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
-  /// Adds to faceOut the power of the rays that left the planes just crossed sideways and, on open axes, of the rays
-  /// that left behind the last plane. Lanes are added one after another, so that the order of summation does not depend
-  /// on which lanes run concurrently.
+  /// Adds to faceOut the power of the rays that left sideways from the planes just crossed and, on open axes, of the
+  /// rays that left behind the last plane. Lanes are added one after another, so that the order of summation does not
+  /// depend on which lanes run concurrently.
   /// @param maps  power of the rays before planes with even index, and before planes with odd index; planes are counted
   /// from where rays start
   void Leave(

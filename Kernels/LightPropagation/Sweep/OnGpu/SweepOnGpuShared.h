@@ -25,7 +25,7 @@ typedef struct
   /// `functions` and maps
   int firstRay;
   ulong map; ///< index of the first float of the lane's maps, [ray][channel][v][u]
-  /// Index of the first float of the lane's path integrals; with angular moments [function][channel][voxel]
+  /// Index of the first float of the lane's path integrals; these are [function][channel][voxel] with angular moments
   ulong path;
   /// The lane's first float has the index 6 * deposit in the partial currents, and the index 3 * deposit in the net
   /// flux

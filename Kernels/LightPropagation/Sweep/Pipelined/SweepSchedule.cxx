@@ -108,8 +108,8 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // Returns the contact of kind `kind`: the cells of block `from` from which rays move by one voxel along each of the
-  // axes `along` into cells of block `to`.
+  // Returns the contact of kind `kind`: those cells of block `from` whose rays enter cells of block `to` in a move by
+  // one voxel along each of the axes `along`.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)

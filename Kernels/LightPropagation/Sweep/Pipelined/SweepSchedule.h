@@ -16,7 +16,8 @@ struct ParallelBundles
   int axis = 0;
   int way = 0;                            ///< sense of marching: 0 forward along the axis, 1 backward
   std::array<int, 3> signs = { 1, 1, 1 }; ///< sign of the directions along x, y, z: 1 or -1
-  /// Bundles of these rays; each member (pair of opposite directions) has only the direction of sense `way`
+  /// Bundles of these rays; each member (pair of opposite directions) has only the direction that marches in sense
+  /// `way`
   std::vector<Bundle> bundles;
   bool goThroughEdges = false; ///< whether any ray moves diagonally, along both transverse axes u and v, in one step
 

@@ -74,7 +74,7 @@ static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
       square_distance(lamp, voxel, row->whole) < row->wholeFrom);
 }
 
-// Adds power that leaves the box from a voxel through one face to the tally and to the face's cell at that voxel.
+// Tallies power that leaves the box from a voxel through one face: for the whole face, and for its cell at this voxel.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
 {
   if (!tally->counts)

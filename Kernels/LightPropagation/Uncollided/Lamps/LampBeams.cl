@@ -46,8 +46,8 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   }
 }
 
-// Adds the net flux, path integral times direction along x, y, z, for a step from way.x to way.y layers from the beam's
-// start.
+// Adds the net flux of a step, i.e. path integral times direction along x, y and z. The step is from way.x to way.y, in
+// layers from the beam's start.
 static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 way, float length, float path,
   __global long* flux, ulong stride)
 {

@@ -43,8 +43,8 @@ typedef struct
 typedef struct
 {
   int axis, up; ///< marching axis of the pyramid, and sense: 1 towards +, 0 towards -
-  /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the axis of a narrow
-  /// cone; else 0
+  /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the cone's axis if the
+  /// cone is narrow; otherwise 0
   float baseU, baseV;
   /// Components along the marching axis, u and v of the cross product of two directions: that of the reference
   /// tangents, and that of the cone's axis; 0 if the two are parallel, as for a narrow cone

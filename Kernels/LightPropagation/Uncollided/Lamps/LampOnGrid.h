@@ -132,8 +132,8 @@ public:
   /// @param even  fraction of the traced power that is to be distributed uniformly over the box
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
-  /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Sums are fractions of this
-  /// power, so that they retain their precision however far away the lamp is.
+  /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Deposits are summed as fractions
+  /// of this share of the power, and so keep their precision however far away the lamp is.
   double Share() const;
 
   /// Arguments of the kernels that describe the lamp and the box.
