@@ -36,8 +36,8 @@ struct Ending
 /// Runs `work`, catches any exception and returns it as an outcome.
 Ending EndingOf(const std::function<void()>& work);
 
-/// Throws the exception that belongs to an outcome of EndingOf: for Failed always InvalidInput, whatever the work
-/// threw; nothing if the work succeeded.
+/// Throws the exception that belongs to an outcome of EndingOf; for Failed this is InvalidInput, whatever the work
+/// threw. Does nothing if the work succeeded.
 void Throw(const Ending& ending);
 
 /// Names of field data of empty outputs, which inform filters downstream: the filter was aborted, or it failed.

@@ -233,8 +233,8 @@ int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
   return count;
 }
 
-/// Text for the warning that a filter runs separately for each block of an input: the consequence, and a filter of
-/// ParaView that avoids it.
+/// Text for the warning that a filter runs separately for each block of an input. It states the consequence, and names
+/// a filter of ParaView that avoids it.
 std::string AboutBlocks(vtkInformation* port)
 {
   if (IsForImagesOfScene(port))

@@ -28,7 +28,7 @@ namespace tyndall
 class FloatField;
 struct InputsKey;
 
-/// The phase function as field data describe it: text and numbers, which are not checked before Functions().
+/// The phase function as field data describe it: text and numbers, which Functions() checks.
 struct PhaseDescription
 {
   std::string name = "henyey_greenstein";
@@ -39,7 +39,7 @@ struct PhaseDescription
   bool gByVoxel = false; ///< whether the cell array `g` takes precedence; field data `g` is then not written
 
   /// Phase functions of the red, green and blue channel.
-  /// @throws InvalidInput naming the channel whose number, or the row of the table, is out of range
+  /// @throws InvalidInput naming the channel, or the row of the table, whose number is out of range
   std::array<PhaseFunction, 3> Functions() const;
   /// The phase function without its parameter g, for a medium whose mean cosine varies by voxel.
   /// @throws InvalidInput unless the phase function has a parameter g that can vary by voxel

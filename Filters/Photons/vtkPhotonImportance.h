@@ -97,9 +97,9 @@ public:
   ///@}
 
   ///@{
-  /// Thresholds if Thresholds is OWN, W/length^2: a coarse cell receives more photons if its `gradient` is at least
-  /// GradientThreshold, or if it is lit and its `fluence` is at most LuminanceThreshold. Default 0 both, valid [0,
-  /// infinity).
+  /// Thresholds that apply if Thresholds is OWN, W/length^2: a coarse cell receives more photons if its `gradient` is
+  /// at least GradientThreshold, or if it is lit and its `fluence` is at most LuminanceThreshold. Default of both 0,
+  /// valid [0, infinity).
   tyndallRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   tyndallRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
   ///@}

@@ -374,7 +374,7 @@ int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformat
       RequireImages(filter);
       RequireWholeArrays(filter);
       CheckProperties(filter);
-      // with several ranks, WholeInputs takes each cell from the rank that owns it, so that duplicates do no harm
+      // With several ranks, WholeInputs takes each cell from the rank that owns it, so that duplicates do no harm
       if (!ranks)
       {
         CheckDuplicates(filter, outputs);

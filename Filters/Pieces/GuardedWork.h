@@ -75,8 +75,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 /// Runs the work of a filter's RequestData, as Guarded does, for a filter that decides itself how to work on the pieces
 /// of one input.
 /// @param port  port of the input that stays in pieces
-/// @param work  called with the controller (null: one rank) and the inputs, of which that at `port` is in pieces; it
-///   may call WholeInputs::MakeWhole
+/// @param work  called with the controller (null: one rank) and the inputs; the input at `port` is in pieces. It may
+///   call WholeInputs::MakeWhole
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
   const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);

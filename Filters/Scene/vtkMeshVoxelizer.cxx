@@ -185,7 +185,7 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
   const bool constant = medium.ior.empty();
   if (constant)
   {
-    // the constant index, for filters that require the array `ior`
+    // Writes the constant index, for filters that require the array `ior`
     medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n));
   }
   tyndall::AddCells(output, "ior", std::move(medium.ior), 1);

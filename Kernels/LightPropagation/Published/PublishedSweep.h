@@ -29,8 +29,8 @@ public:
     bool add; ///< whether deposits are added to those of earlier launches in this plane
   };
 
-  /// Path of a batch's rays of one sub-map through the volume. Rays start at N x N positions within their voxels; a
-  /// sub-map has those that start at the same position ("divide the LPM into N smaller sub-LPM", section 5 of the
+  /// Path of a batch's rays of one sub-map through the volume. Rays start at N x N positions within their voxels; the
+  /// rays that start at the same position form a sub-map ("divide the LPM into N smaller sub-LPM", section 5 of the
   /// paper).
   struct Pass
   {
