@@ -197,10 +197,11 @@ public:
 
   ///@{
   /// Storage of light in empty bricks (8^3 voxels without medium): voxel by voxel (BY_VOXEL), or as the mean over the
-  /// brick (BY_BRICK), which photons then cross in one segment; AS_READ chooses by the input file. Storage by bricks
-  /// needs a fraction of the time and memory if the medium is mostly empty; `fluence` in bricks with medium is the
-  /// same, to rounding. Bricks are used if the index is constant, at least three quarters of the bricks are empty,
-  /// MaximumOrders is 1 and the scheme conservative, without PhotonCounts and several batches. Default AS_READ.
+  /// brick (BY_BRICK), which photons then cross in one segment; AS_READ chooses by the fraction of active voxels in the
+  /// medium's file. Storage by bricks needs a fraction of the time and memory if the medium is mostly empty; `fluence`
+  /// in bricks with medium is the same, to rounding. Bricks are used if the index is constant, at least three quarters
+  /// of the bricks are empty, MaximumOrders is 1 and the scheme conservative, without PhotonCounts and several batches.
+  /// Default AS_READ.
   tyndallRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
   ///@}
 

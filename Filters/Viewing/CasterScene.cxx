@@ -86,8 +86,8 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
   inputs.direct = read(ViewedFluenceDirect, { 1, 3 });
   inputs.ior = read(ViewedIndex, { 1 });
   inputs.meanDirection = read(ViewedMeanDirection, { 3 });
-  // The solver's error, angular moments and light at faces belong to its array `fluence`, and are not read with another
-  // array as fluence.
+  // The solver's error, angular moments and light at faces belong to its array `fluence`, and are not read if another
+  // array is used as fluence.
   if (inputs.fluence.IsThere() &&
     ChosenArray(filter, ViewedFluence, image, ViewedNames[ViewedFluence]) == image->GetCellData()->GetArray("fluence"))
   {

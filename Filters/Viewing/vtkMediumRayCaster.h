@@ -150,9 +150,9 @@ public:
   ///@}
 
   ///@{
-  /// Picture and camera (tyndallCameraMacro). Default of ImageSize: 800 x 600. CameraPosition and CameraFocalPoint:
-  /// default (0, 0, 0) both; if they are equal, the camera frames the medium. Valid up to 1e15 voxels from the medium.
-  /// Default of CameraViewUp (0, 0, 1), of CameraViewAngle 30.
+  /// Picture and camera (tyndallCameraMacro). Defaults: ImageSize 800 x 600, CameraPosition and CameraFocalPoint (0, 0,
+  /// 0), CameraViewUp (0, 0, 1), CameraViewAngle 30. If position and focal point are equal, the camera frames the
+  /// medium. Both are valid up to 1e15 voxels from the medium.
   tyndallCameraMacro();
   ///@}
 
@@ -172,9 +172,9 @@ public:
 
   ///@{
   /// Whether to estimate the error of radiance, as the array `picture_error`, from two more pictures of every second
-  /// pixel: one with half as many samples, and one of `fluence_error`, the error of the light. Without this array,
-  /// `left_out` says that the light's part is missing. The error of interpolation between voxel centres is not
-  /// included. Default off.
+  /// pixel: one with half as many samples, and one of `fluence_error`, the error of the light. Without the array
+  /// `fluence_error`, `left_out` says that the light's part is missing. The error of interpolation between voxel
+  /// centres is not included. Default off.
   tyndallFlagMacro(EstimateError);
   ///@}
 
