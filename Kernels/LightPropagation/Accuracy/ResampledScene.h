@@ -67,8 +67,8 @@ std::vector<float> Repeated(const float* values, int components, const Grid& coa
 class DividedScene
 {
 public:
-  /// @param scene  scene to refine; each fine voxel gets the values of its voxel, but SceneBlock::index is dropped.
-  ///   Must outlive this object
+  /// @param scene  scene to refine; each fine voxel gets the values of the voxel that contains it, but
+  ///   SceneBlock::index is dropped. Must outlive this object
   /// @param parts  number of fine voxels per voxel along each axis
   DividedScene(const SceneBlock& scene, const Factors& parts);
   DividedScene(const DividedScene&) = delete;

@@ -34,8 +34,8 @@ struct Deposit
   /// of the whole domain.
   const Buffer<float>* faceOut = nullptr;
   /// Whether escaped power is spread along a face. A ray nearly parallel to a face meets it only every few cells. Its
-  /// power is then spread over all cells up to the next cell that it meets. False: all of its power leaves through the
-  /// cell that it meets, as for incident light.
+  /// power is then spread over as many cells as lie between two of these crossings. False: all of its power leaves
+  /// through the cell that it meets, as for incident light.
   bool spreadsAside = false;
 };
 

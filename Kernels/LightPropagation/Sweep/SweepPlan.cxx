@@ -176,7 +176,7 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
   // At most BundlesTogether bundles cross a tile of rows in one call. If there are no more bundles, rows are packed
-  // (copied to scratch) just before the bundles cross them, while they are in the cache.
+  // (copied to scratch) just before the bundles cross them, and are then still in the cache.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));

@@ -15,8 +15,8 @@ namespace
 {
 constexpr double Rounding = 1e-6; ///< relative difference of radiances that are taken as equal
 /// Rays without fractional moves, i.e. moves of only a part of a ray's power (numerics.md, Eq. (21)), do not carry
-/// exactly the incident power into the box. This is the largest accepted relative difference. In a box of one voxel,
-/// rays without fractional moves miss up to a fifth of the power through one face.
+/// exactly the incident power into the box. This is the largest accepted relative difference between these powers. In a
+/// box of one voxel, rays without fractional moves miss up to a fifth of the power through one face.
 constexpr double MissedAtMost = 0.3;
 
 int FaceOf(const Direction& direction, int axis)

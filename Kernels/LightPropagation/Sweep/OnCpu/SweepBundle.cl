@@ -122,7 +122,8 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
 
 // Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al. 2012, Eq. 3, in
 // conservative form). P is the power of a ray before the segment, P' its power behind it, p1 the mean transmitted
-// length, q the source, and `power` the power of a ray at radiance 1: path += p1 P,  P' = P - sigma p1 P + power q p1
+// length, q the source, and `power` the power of a ray at radiance 1:
+//   path += p1 P,  P' = P - sigma p1 P + power q p1
 // Light of the source also has a path integral within the voxel where it starts. It does not depend on P, and is added
 // by add_own_light in Sweep.cl.
 // @param entered  rows of the power that enters the plane's voxels, W, [channel][CurrentFaces]; null if not computed

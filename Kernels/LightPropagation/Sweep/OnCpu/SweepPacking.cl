@@ -199,8 +199,8 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
 }
 
 #if ANGULAR
-// Index in the volume's array of the first of the moments of voxel (u, v) in a channel, from the second angular
-// function on. The planes are normal to x, and those from `first` on must be in one group of MomentGroup voxels.
+// Index, in the volume's array of moments, of the moment of voxel (u, v) for the second angular function and a channel.
+// The planes are normal to x; those from `first` on must be in one group of MomentGroup voxels.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
@@ -211,8 +211,7 @@ static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int fi
     IN_ROW(layout->firstP + first, higher);
 }
 
-// Index in a packed plane of the first of the moments of voxel (u, v) in a channel, from the second angular function
-// on.
+// Index, in the moments of a packed plane, of the moment of voxel (u, v) for the second angular function and a channel.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);

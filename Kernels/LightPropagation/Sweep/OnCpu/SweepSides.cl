@@ -97,7 +97,7 @@ typedef struct
   float begin, end;
 } face_planes;
 
-// Range of planes through whose cells the power of a ray leaves that moves sideways in the current plane.
+// Range of planes through whose cells a ray leaves. The ray moves sideways in the current plane.
 // @param planes  number of planes from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {

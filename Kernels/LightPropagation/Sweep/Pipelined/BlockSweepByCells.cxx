@@ -102,8 +102,8 @@ double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) c
   return this->Cells.in ? this->Cells.in[this->CellOf(face, voxel, channel)] : 0.0;
 }
 
-/// Mean incident radiance of two cells of a face: that of `voxel`, and that one move of the ray further. If the second
-/// cell is not on the face, the radiance of the first cell.
+/// Mean incident radiance of two cells of a face: the cell at `voxel`, and the cell one move of the ray further. If the
+/// second cell is not on the face, the radiance of the first cell.
 double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, int move, int channel) const
 {
   const int size = this->Sweep.Whole.size[aside];

@@ -200,8 +200,8 @@ private:
   RectangleArea Whole;
   glm::dvec3 Normal;
   double Finest; ///< length of the longer edge of the smallest parts
-  /// A part lights voxels at this or a larger distance from its centre, in radii of the part. PartDistance; more if
-  /// Light::fineness is large.
+  /// A part lights voxels at this or a larger distance from its centre, in radii of the part. The value is
+  /// PartDistance, or more if Light::fineness is large.
   double Away;
   int PerEdge;
   double LeastError;
