@@ -12,12 +12,14 @@ class vtkImageData;
 
 /// Reads and writes the phase function of a medium as field data. No other code does.
 ///
-/// | name               | numbers | meaning | |--------------------|---------|---------| | `phase_function`   | a
-/// text  | one of the names below; missing: `henyey_greenstein` | | `g`                | 1 or 3  | mean cosine, one for
-/// all channels or one for each; of the first lobe if there are two. Default 0 | | `phase_second_g`   | 1 or 3  | mean
-/// cosine of the second lobe | | `phase_first_part` | 1 or 3  | fraction of the light that the first lobe scatters, 0
-/// to 1 | | `phase_cosine`     | n       | rows of a table: cosine of the scattering angle, -1 to 1, ascending or
-/// descending | | `phase_value`      | n       | the phase function at these cosines, in any unit |
+/// | name               | numbers | meaning |
+/// |--------------------|---------|---------|
+/// | `phase_function`   | a text  | one of the names below; missing: `henyey_greenstein` |
+/// | `g`                | 1 or 3  | mean cosine, for all channels or each; with two lobes, of the first. Default 0 |
+/// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
+/// | `phase_first_part` | 1 or 3  | fraction of the light that the first lobe scatters, 0 to 1 |
+/// | `phase_cosine`     | n       | rows of a table: cosine of the scattering angle, -1 to 1, ascending or descending |
+/// | `phase_value`      | n       | the phase function at these cosines, in any unit |
 ///
 /// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. The
 /// functions `isotropic`, `rayleigh` and `tabulated` determine their mean cosine themselves: `g` is optional there and

@@ -24,8 +24,8 @@ namespace tyndall
 {
 class Communicator;
 
-/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together. They cannot
-/// infer it, because independent ranks, too, may each request the complete input.
+/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together. These
+/// filters cannot infer it, because independent ranks, too, may each request the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// Determines in RequestData whether ranks run the filter together.

@@ -328,8 +328,8 @@ vtkSmartPointer<vtkDataObject> WholeOf(vtkMultiProcessController* ranks, vtkData
   return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named, where);
 }
 
-/// Checks that input images are complete if only one of several ranks updates. It cannot gather missing pieces, because
-/// the other ranks do not take part.
+/// Checks that input images are complete if only one of several ranks updates: the other ranks do not take part, so
+/// that missing pieces cannot be gathered.
 void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();

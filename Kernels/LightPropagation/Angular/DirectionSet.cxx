@@ -55,9 +55,9 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index, among a face's directions, of the direction whose cell contains the point (s, t) of the face, -1 <= s, t <=
-/// 1. Used for quadratures whose cells do not form a grid. By symmetry, the nearest direction of each orbit (directions
-/// that are equivalent by symmetry) is in the same eighth of the face as the point.
+/// Index, among a face's directions, of the direction whose cell contains the point (s, t) of the face, both from -1
+/// to 1. Used for quadratures whose cells do not form a grid. By symmetry, the nearest direction of each orbit
+/// (directions that are equivalent by symmetry) is in the same eighth of the face as the point.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
