@@ -85,8 +85,8 @@ struct SweepPlan : SweepDescription
   /// Number of planes of the grid that rays cross before they reach the swept box.
   /// @param way  sense of marching: 0 forward, 1 backward
   int PlanesBefore(int way) const;
-  /// Number of planes from where rays start to the end of the swept box; the larger number of the two senses of
-  /// marching.
+  /// Number of planes from where rays start to the end of the swept box, in all laps in which rays start; the larger
+  /// number of the two senses of marching.
   int CrossingPlanes() const;
   /// Number of floats of scratch memory per unit of work (the rays that one work-item carries)
   std::size_t ScratchFloats() const;

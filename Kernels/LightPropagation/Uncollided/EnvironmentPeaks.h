@@ -14,7 +14,7 @@ struct SplitEnvironment
 
 /// Finds peaks of an environment in the cell of each direction of `set` (the pixels nearest to it). If the radiance of
 /// pixels in the brightest twentieth of a cell's solid angle exceeds four times the mean of the rest of the cell, the
-/// excess becomes one directional light from its centre of power (numerics.md, Eq. (32)), provided that it carries at
-/// least 1/500 of the environment's power. Colour and power are conserved exactly.
+/// excess becomes one directional light from the direction of its centre of power (numerics.md, Eq. (32)), provided
+/// that it carries at least 1/500 of the environment's power. Colour and power are conserved exactly.
 SplitEnvironment Split(const Environment& environment, const DirectionSet& set);
 }
