@@ -6,8 +6,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
-// linked.
+// This file calls only inline and virtual functions of vtkSMPVRepresentationProxy, so that the library RemotingViews,
+// which needs GLEW, is not linked.
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 

@@ -51,8 +51,9 @@ struct VoxelArrays
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
 /// Whether a filter reads an image with one voxel around each point (PropertyRange.h, tyndallPointDataMacro), because
-/// it reads point arrays and no cell arrays. If cell arrays of the medium (port 0) are read, an image at another port
-/// that has as many points as the medium is also read by cells.
+/// it reads point arrays and no cell arrays. If the filter reads cell arrays of the medium (port 0), an image at
+/// another port with as many points along each axis has the voxels of the medium: its point arrays are averaged to
+/// cells.
 /// @param averaged  receives the names of point arrays that are averaged to cells
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
 

@@ -12,7 +12,7 @@ constexpr std::pair<Quality, const char*> Qualities[] = { { Quality::Draft, "dra
   { Quality::Fine, "fine" }, { Quality::Reference, "reference" } };
 
 /// Radiance of the scene's picture without background, as the fluence of three channels.
-/// @param estimate  whether to estimate its error, without that of the light
+/// @param estimate  whether to estimate the picture's error, without the part due to the error of the light
 LightField Rendered(
   Device& device, const ComparedScene& scene, ViewSettings settings, bool estimate, const Monitor& monitor)
 {

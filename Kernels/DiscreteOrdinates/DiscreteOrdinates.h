@@ -34,7 +34,7 @@ namespace tyndall
 /// @param medium  of this rank's block, on the grid domain.OwnGrid(); not read if that is empty
 /// @param illumination, settings  the same on all ranks
 /// @param kept  light of the previous solve, used as first guess and replaced by the light of this solve (KeptLight.h);
-///   null, on all ranks or none: no first guess, nothing is kept. Used and kept by SolveBySweptOrdinates()
+///   null: no first guess, and no light is kept. Null on all ranks or on none. Used and kept by SolveBySweptOrdinates()
 ///   (OrdinatesTransport.h)
 /// @return light of this rank's block; balance, face powers and convergence are of the whole grid
 /// @throws InvalidInput  from Check(medium), Check(illumination); if settings are out of range; for the published

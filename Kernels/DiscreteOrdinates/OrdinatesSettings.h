@@ -20,13 +20,14 @@ enum class OrdinatesScheme
   Conservative = 1 ///< exponential, energy-conserving sweep along each direction (numerics.md, Eq. (D10))
 };
 
-/// Form of the phase function between directions.
+/// How the phase function between the D directions is represented.
 enum class OrdinatesScattering
 {
-  Matrix = 0,         ///< every pair of directions: D x D multiplications per voxel
-  SingularValues = 1, ///< N terms by singular value decomposition, as published: N + N multiplications per direction
-  /// N terms by degree of spherical harmonics: N + N multiplications per direction, exact moments, no factorisation
-  /// needed.
+  Matrix = 0, ///< its value for each pair of directions: D^2 multiplications per voxel
+  /// sum of N products from a singular value decomposition, as published: 2 N multiplications per direction
+  SingularValues = 1,
+  /// sum of N products of spherical harmonics, lowest degrees first: 2 N multiplications per direction, with exact
+  /// moments and without a decomposition
   SphericalHarmonics = 2
 };
 

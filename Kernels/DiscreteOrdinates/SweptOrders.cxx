@@ -25,7 +25,8 @@ PairSums SumsOf(const OrdinatesSettings& settings)
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Matrix : PairSums::Terms;
 }
 
-/// Whether a scattering source can be negative: false for isotropic scattering by terms.
+/// Whether a scattering source can be negative. It cannot if it is computed as a sum of products (PairSums::Terms) and
+/// scattering is isotropic, so that the sum has one term.
 bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;

@@ -188,7 +188,7 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
 }
 
-/// Cumulative distribution of a tabulated phase function, a parabola between two rows.
+/// Cumulative distribution of a tabulated phase function: a parabola between two rows of the table.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
   const std::size_t row = RowBefore(table.cosines, cosine);

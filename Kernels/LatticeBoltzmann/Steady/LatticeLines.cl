@@ -193,8 +193,8 @@ static Crossed cross_down(Link link, Behind below, exact down)
 
 // Lower end of a line, or of the piece of a line in one block. arrived: light that arrives in the first voxel from
 // below. back: fraction of the light sent down by the first voxel that returns to it. part: fraction of the light sent
-// up across the cut that the link transmits, if the line is cut at this end because it is closed or comes from another
-// block; else 0.
+// up across the cut that the link transmits, if the line is cut at this end because it closes on itself around periodic
+// axes or comes from another block; else 0.
 typedef struct
 {
   exact arrived, back, part;

@@ -9,11 +9,13 @@
 
 namespace tyndall
 {
-/// Orbit of a direction, i.e. all its images under the rotations and reflections of the cube. On each face, these
-/// directions pass through the points (+-across, +-along) and (+-along, +-across).
+/// Orbit of a direction, i.e. all its images under the rotations and reflections of the cube. Seen from the cube's
+/// centre, these directions pass through the points (+-across, +-along) and (+-along, +-across) of each face, whose
+/// edges are at -1 and 1.
 struct DirectionOrbit
 {
-  /// Coordinates of the point of a face through which one direction of the orbit passes, 0 <= across <= along < 1.
+  /// Coordinates, on a face of the cube, of one of the points through which directions of the orbit pass: 0 <= across
+  /// <= along < 1.
   double across = 0.0, along = 0.0;
   double weight = 0.0; ///< weight of each direction of the orbit, sr
   /// Offset that Nearest() adds to the cosine of the angle to a direction of this orbit, so that the solid angle of

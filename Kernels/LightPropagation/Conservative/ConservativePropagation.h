@@ -43,7 +43,7 @@ enum class IterationScheme;
 /// @param medium  of this rank's block; for a block without voxels only the grid is read
 /// @param illumination, settings  equal on all ranks, except for settings.memoryBudget
 /// @param kept  light of the previous solve, used as first guess and replaced by the light of this solve (KeptLight.h);
-///   null, on all ranks: no first guess, nothing is kept
+///   null: no first guess, and no light is kept. Null on all ranks or on none
 /// @return the light of this rank's block; balance, face powers and convergence are of the whole domain
 /// @throws InvalidInput  from Check(domain, ...) (SceneChecks.h)
 /// @throws DeviceError  if the buffers do not fit

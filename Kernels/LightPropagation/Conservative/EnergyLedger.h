@@ -36,9 +36,9 @@ public:
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
   /// Scales absorbed and escaped powers down if their sum exceeds the incoming power, so that no unaccounted power is
-  /// below 0. The excess is the error of the predicted part of these powers. Leaves a channel unchanged if this error
-  /// is too large.
-  /// @param error  largest error, relative to the absorbed and escaped power
+  /// below 0. For coarse-mesh DSA, which predicts the absorbed and escaped power of later scattering orders: the excess
+  /// is the error of this prediction. Leaves a channel unchanged if its excess is too large.
+  /// @param error  largest excess that is removed, as a fraction of the absorbed and escaped power
   void SettleOvercount(double error);
 
   /// Adds the incident and escaped powers of a sweep.

@@ -23,8 +23,8 @@ struct IterationResult
   std::vector<float> firstMoments;
   /// Power that left through each cell of the box faces, W, [channel][cell], if requested.
   std::vector<double> leftByCell;
-  /// Angular moments of the scattered radiance of all light except uncollided light of lamps, in the layout of a source
-  /// (ScatteringOperator); only if TransportParts::StoresMoments().
+  /// Angular moments of the in-scattered radiance, without the first-scattered light of lamps, in the layout of a
+  /// source (ScatteringOperator). Set only if TransportParts::StoresMoments().
   Buffer<float> shown;
   std::vector<std::string> leftOut; ///< entries of LightField::leftOut that the iteration adds
   KeptLight kept;                   ///< light to begin the next solve from; empty: not requested

@@ -9,9 +9,9 @@
 
 namespace tyndall
 {
-/// Device memory of a solve that does not stream arrays, in bytes: an upper bound, about a quarter above the typical
-/// use. If more memory is free, GPUs use more, for separate arrays of all marching directions (SweepOnGpu.h).
-/// Collective.
+/// Device memory, in bytes, with which a solve need not stream arrays: an estimate, about a quarter above the typical
+/// need. A GPU uses further free memory, if there is any, for separate arrays of each marching direction
+/// (SweepOnGpu.h). Collective.
 std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how);
 
 /// Memory budget of a solve on a device: settings.memoryBudget bytes or, if that is 0, nine tenths of the free memory.

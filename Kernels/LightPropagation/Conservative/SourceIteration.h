@@ -49,8 +49,8 @@ class SourceIteration : public Iteration
 {
 public:
   /// @param parts  must outlive this
-  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: start from zero and
-  ///   keep nothing
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this object. Null, which it then is on all
+  ///   ranks: the solve starts from zero and keeps no light
   explicit SourceIteration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 

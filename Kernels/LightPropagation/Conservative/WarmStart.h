@@ -16,8 +16,8 @@ class WarmStart
 {
 public:
   /// @param parts  must outlive this
-  /// @param kept  light of the previous solve, must outlive this object; null, on all ranks: start from zero and keep
-  ///   nothing
+  /// @param kept  light of the previous solve, must outlive this object. Null, which it then is on all ranks: the solve
+  ///   starts from zero and keeps no light
   /// @param method  name of the iteration scheme
   WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method);
 

@@ -32,7 +32,7 @@ const double UsualError = PropagationSettings().emissionError;
 /// each n the first 2^n points, in bit-reversed order, are a lattice, too.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
-/// Lattice points, [dimension][MostRays], coordinates between 0 and 1.
+/// Lattice points, [dimension][MostRays], with coordinates in [0, 1).
 std::vector<float> LatticePoints()
 {
   std::vector<float> points;
@@ -45,7 +45,8 @@ std::vector<float> LatticePoints()
       {
         reversed |= (i >> bit & 1u) << (31 - bit);
       }
-      // the integer part is lost by overflow; the shift avoids the coordinate 0
+      // Overflow drops the integer part of the coordinate. With 2^-10 added, no coordinate of the first 512 points is
+      // 0.
       const std::uint32_t place = reversed * component + (1u << 22);
       points.push_back(static_cast<float>(place >> 8) * 0x1p-24f);
     }

@@ -17,10 +17,10 @@
 
 namespace tyndall
 {
-/// A scene as it is solved: in units of length and power that floats represent well, widened along axes on which
-/// nothing varies, and with as few channels as needed. Each rank has the medium of its subdomain; all properties on
-/// which decisions are based (traits, channels, degree of the moments) refer to the domain. Made once from the user's
-/// input; Undo() converts the resulting light back.
+/// A scene as it is solved: in units of length and power that floats represent well, with voxels widened along axes on
+/// which nothing varies (UnvaryingAxes), and with as few channels as needed. Each rank has the medium of its subdomain;
+/// all properties on which decisions are based (traits, channels, degree of the moments) refer to the domain. Made once
+/// from the user's input; Undo() converts the resulting light back.
 class PropagationProblem
 {
 public:

@@ -135,8 +135,8 @@ public:
   MarchInfo Describe() const;     ///< parameters of the marching kernels
   IndexGrid DescribeGrid() const; ///< size of the grid for kernels
   /// Parameters of the kernels that convert the sums of deposits to light.
-  /// @param weightUnit  photon weight per unit of the voxels' sums (StartingPhotons::weightUnit), if photons are
-  /// counted
+  /// @param weightUnit  photon weight that counts as 1 in the voxels' integer sums (StartingPhotons::weightUnit), if
+  ///   photons are counted
   LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
   /// Maximum number of path segments of a photon in the domain (tyndall::MarchEventLimit).
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }

@@ -125,7 +125,7 @@ typedef struct
   /// Binary exponent of the factor from deposits to fluence, which may itself be below the range of float
   int exponent;
   float colour[3];            ///< colour of the single channel, relative to white, if CHANNELS is 1
-  float weight;               ///< photon weight per unit of the voxels' sums of weights
+  float weight;               ///< photon weight that counts as 1 in the voxels' integer sums of weights
   int absorption, scattering; ///< number of components of sigma_a and sigma_s; 0: absent
   /// Number of copies of the sums of deposits, and number of batches; copy c belongs to batch c % batches
   int copies, batches;

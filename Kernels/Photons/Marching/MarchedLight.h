@@ -31,7 +31,8 @@ public:
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
   /// Converts the sums to the arrays of `result` and to absorbed and scattered power, then zeroes the sums.
   /// result.light.channels must be set to the number of channels wanted.
-  /// @param weightUnit  photon weight per unit (StartingPhotons::weightUnit), if photons are counted
+  /// @param weightUnit  photon weight that counts as 1 in the voxels' integer sums (StartingPhotons::weightUnit), if
+  ///   photons are counted
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const;
 
 private:

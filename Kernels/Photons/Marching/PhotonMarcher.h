@@ -56,8 +56,8 @@ public:
   /// @param share  this rank's photons: all photons are those of rank 0, then those of rank 1, and so on
   /// @return arrays of this rank's block; energy balance, face powers and counts of the domain
   /// @throws InvalidInput if a photon's position, direction, power or weight is not finite, its power or weight
-  ///   negative, its batch (if batches are requested) not 0 to 63, or there are more photons than voxels can count;
-  ///   DeviceError if the sums of all batches do not fit; Aborted
+  ///   negative, its batch (if batches are requested) not 0 to 63, or photons are counted and exceed the maximum of a
+  ///   voxel's counter; DeviceError if the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
 
   /// Marches photons in turns, with callbacks in between. Each turn is a launch over a limited number of path segments.

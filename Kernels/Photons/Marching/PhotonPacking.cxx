@@ -466,7 +466,7 @@ void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, Star
 /// Computes the mark of each photon, a 64-bit integer that the photon adds to each voxel on its path. The upper bits
 /// are a count of 1, the lower bits the photon's weight in units.
 /// @param largest, count  largest weight, and number, of the photons of all ranks
-/// @throws InvalidInput if there are more photons than voxels can count
+/// @throws InvalidInput if there are more photons than the counter of a voxel can hold
 void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)
 {
   // The count has the upper bits of a 64-bit number; the lower bits hold the sum of the photons' weights.

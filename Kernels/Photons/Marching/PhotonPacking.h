@@ -100,7 +100,7 @@ struct StartingPhotons
 ///   (Pack)
 /// @param settings  whether batches are summed separately, and whether photons are counted
 /// @throws InvalidInput  on every rank, if any rank has a photon that Pack refuses or, if batches are requested, whose
-///   batch is not 0 to 63, or if there are more photons than voxels can count
+///   batch is not 0 to 63, or if photons are counted and exceed the maximum of a voxel's counter
 StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
   bool coloured, double depositsAtMost, const MarchSettings& settings);
 

@@ -126,8 +126,8 @@ static BY_ROW void find_words(const SweepInfo* info, const __global float* plane
   }
 }
 
-// Copies rows [rows.x, rows.y) of planes to scratch memory, where rays cross them. Sets the path integrals, net flux
-// and partial currents of these rows to 0.
+// Copies the rows rows.x to rows.y - 1 of several planes to scratch memory, from which the kernels that follow rays
+// read them. Sets the path integrals, net flux and partial currents of these rows to 0.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;

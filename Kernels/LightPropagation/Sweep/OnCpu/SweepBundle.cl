@@ -496,8 +496,8 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
     }
   }
   go_to_plane(state, 0);
-  // If v is periodic, the first rows are crossed again as ghost rows beyond the last row. Their rays are copied there
-  // in advance, because the originals are overwritten before that.
+  // If v is periodic, the first rows are crossed again as ghost rows beyond the last row. Their rays are copied to the
+  // ghost rows in advance, because the first rows are overwritten before the ghost rows are crossed.
   for (int i = 0; PERIODIC_V && begins && i < (chain->stages - 1) * BLOCK; ++i)
   {
     map[state->sizeV * BLOCK + i] = map[(i / BLOCK % state->sizeV) * BLOCK + i % BLOCK];

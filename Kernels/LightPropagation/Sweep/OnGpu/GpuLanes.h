@@ -19,8 +19,8 @@ SweepLane LaneOf(const SweepPlan& plan, int way);
 /// (LanePlane.cl).
 std::size_t SideFloats(const SweepLane& lane);
 
-/// Values of the angular functions, followed by those of beams, in the directions of the rays of a sweep plan that
-/// march in one sense (`way`, 0 forward, 1 backward): [ray][function, then beam].
+/// For each ray of a sweep plan that marches in one sense (`way`, 0 forward, 1 backward): the values of the angular
+/// functions in the ray's direction, then those of the angular distributions of AngularBasis::beams.
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
 
 /// Batch of lanes (each the rays of one sense along an axis) that cross planes in the same launches: some lanes of open
@@ -54,7 +54,8 @@ struct GpuLanes
   std::vector<LaneBatch> batches;
   std::vector<BundleInfo> bundles;
   std::vector<CrossingInfo> crossings;
-  /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
+  /// For each ray: the values of the angular functions in its direction, then those of the angular distributions of
+  /// AngularBasis::beams. Empty without angular moments
   std::vector<float> functions;
   /// For each lane: index at which LanePowers stores the power of the lane's rays behind the last plane, summed over
   /// each row, [ray][channel][v]
