@@ -105,8 +105,8 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, co
   return device;
 }
 
-/// Settings of a solve from the filter's properties, modified by Preview or, without TargetError, by Quality, for the
-/// medium of all ranks. Collective.
+/// Settings of a solve: the filter's properties, changed by Preview or, without TargetError, by Quality. The changes
+/// depend on the medium of all ranks. Collective.
 /// @throws InvalidInput if TargetError is set with the published scheme
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {

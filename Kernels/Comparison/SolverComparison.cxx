@@ -116,8 +116,8 @@ private:
 
   Grid SceneGrid;
   const ReferenceLight& Reference;
-  /// number of voxels of the scene's grid per voxel of the reference's along each axis; no value if the reference is
-  /// finer
+  /// number of voxels of the scene's grid per voxel of the reference's grid, along each axis; no value if the
+  /// reference's grid is finer
   std::optional<Factors> ToReference;
   bool IsThere = false;
   std::vector<float> Fluence, FluenceDirect;

@@ -122,8 +122,8 @@ __kernel void look_at_lattice(const __global float* fluence, const __global int*
   seen[i] = fluence[voxels[i]];
 }
 
-// Computes the net flux, W / length^2, [x, y, z][voxel]: the mean of arriving and leaving densities times link vectors.
-// One work-item per row of voxels.
+// Computes the net flux, W / length^2, [x, y, z][voxel]: the sum over links of the link's vector times the mean of its
+// arriving and its leaving density. One work-item per row of voxels.
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];

@@ -91,7 +91,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   if (this->Compression & COMPRESS_BLOSC)
   {
-    // Checks the sizes in the header of a Blosc block, which Blosc trusts.
+    // Checks the sizes in the header of a Blosc block, because Blosc itself does not check them.
     std::array<std::uint32_t, 4> header = {};
     if (length >= static_cast<std::int64_t>(sizeof(header)))
     {

@@ -146,9 +146,9 @@ private:
   bool Continues; ///< whether rays wrap around the marching axis after the last plane
 };
 
-/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double precision. Voxel boundaries less than 1e-9
-/// of the path through a plane apart are crossed at once, so that rounding affects all rays of a direction equally. A
-/// boundary at the very end of the path is crossed in the next order.
+/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double precision. Two voxel boundaries whose
+/// distance along the ray is less than 1e-9 of its path through a plane are crossed at once, so that rounding affects
+/// all rays of a direction equally. A boundary at the very end of the path is crossed in the next order.
 class GridWalk
 {
 public:

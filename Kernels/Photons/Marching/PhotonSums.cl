@@ -162,7 +162,7 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
 //                   voxels
 //   photon_count    one value per voxel; photon_weight: mean weight of the counted photons, 0 if there are none
 //   batch_fluence   [voxel][batch][COLOURS] fluence of each batch, as if it carried all the power
-//   taken           [row][absorbed, scattered][CHANNELS], power in units
+//   taken           [row][absorbed, scattered][CHANNELS], power in units of PackedPhotons::unit
 __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
   __global float* photon_count, __global float* photon_weight, __global float* batch_fluence, __global long* taken)
