@@ -38,7 +38,7 @@ public:
   /// Adds uncollided light to fluence and powers, and its first-collision source to `source`: light of all lamps, light
   /// emitted by empty voxels, and light given by another solver. Collective.
   /// @param source  source of all directions, W / (length^3 sr). On entry the source of a voxel is its element of
-  ///   `source` times Scale. On return, if light was added, it is the element, and Scale is 1
+  ///   `source` times Scale. On return, if light was added, the source is the element itself, and Scale is 1
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
   /// Power of lamp light that wraps around periodic axes without end, because nothing attenuates it, W.

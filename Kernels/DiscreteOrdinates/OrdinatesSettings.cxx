@@ -46,7 +46,7 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.netFlux = settings.netFlux;
   as.leaveOut = settings.leaveOut;
   as.acceleration = settings.acceleration;
-  as.angularDegree = 0; // no angular moments: scattering is between directions
+  as.angularDegree = 0; // no angular moments: the radiance of each direction is scattered into all directions
   as.uncollidedDirections = IsPublished(settings) ? 0 : settings.uncollidedDirections;
   as.alongRays = false;
   as.storeMoments = false;

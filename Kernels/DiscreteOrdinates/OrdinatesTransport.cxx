@@ -31,7 +31,7 @@ namespace
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
 /// Number of scattering orders up to which anisotropic scattering is not accelerated. Acceleration represents
-/// scattering by angular moments, which are less accurate than scattering between directions.
+/// scattering by angular moments, which is less accurate than scattering from each direction into all directions.
 constexpr double FewOrders = 100.0;
 
 /// Directions of a quadrature that are swept. If a symmetry makes several directions carry the same light

@@ -25,7 +25,8 @@ bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 /// solved here only if many orders are needed: by DSA, in spherical harmonics up to the largest degree L with (L + 1)^2
 /// <= `settings.terms`. Collective. Other parameters as for SolveDiscreteOrdinates().
 /// @param even  problem of the scene with isotropic scattering, by AsPropagation(settings)
-/// @return no value if the scene is to be solved by source iteration between directions instead
+/// @return no value if the scene is to be solved by source iteration on the radiance of all directions (SweptOrders)
+///   instead
 std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
   const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept);
 

@@ -48,7 +48,7 @@ struct LatticeVoxels
   std::array<double, 6> albedo{};   ///< albedo of the faces -x, +x, ... +z
 
   /// Collective. @param problem must outlive this object
-  /// @throws InvalidInput if a voxel with a source has endless lines only (names the first such known voxel)
+  /// @throws InvalidInput if all lines through a voxel with a source are endless (names the first such known voxel)
   LatticeVoxels(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct, int channel);
 
   /// Sets `source` and `crossing` from the first-collision source of uncollided light and from emission.

@@ -109,8 +109,8 @@ struct DeltaM
 /// Truncations of a phase function at the degrees 0 to `degree`, one element per degree.
 std::vector<DeltaM> Truncations(const PhaseFunction& function, int degree);
 
-/// A phase function between directions counts as nowhere negative if its smallest value, relative to its mean, is at
-/// least this. The margin above 0 allows for rounding.
+/// A phase function that is tabulated for pairs of directions counts as nowhere negative if its smallest value,
+/// relative to its mean, is at least this. The margin above 0 allows for rounding.
 constexpr double LeastPart = 1e-3;
 /// Smallest damping s of numerics.md, Eq. (8d), for which a phase function is nowhere below LeastPart. Found by 20
 /// bisections.

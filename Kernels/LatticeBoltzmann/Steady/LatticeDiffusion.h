@@ -27,7 +27,7 @@ public:
 
   /// Solves the diffusion system with `residual` as right-hand side, until the residual of that system has fallen to a
   /// tenth. Collective.
-  /// @param residual  of the transport equation, by own voxel
+  /// @param residual  residual of the transport equation in each own voxel
   /// @param unit  root mean square of `residual` over all ranks, > 0
   /// @return the solution, fluence / n^2, by own voxel
   Values Solve(const Values& residual, double unit);

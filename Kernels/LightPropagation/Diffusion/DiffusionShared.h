@@ -73,7 +73,7 @@ typedef struct
 {
   float cosine; ///< cosine of the directions to the axis, 0 to 1
   float chord;  ///< length of path in a voxel over which the sweep attenuates their radiance
-  float weight; ///< solid angle of the directions over 4 pi, times `cosine`
+  float weight; ///< solid angle of the directions divided by 4 pi, times `cosine`
 } FlatSourceNode;
 
 /// Values for each cell of the box's faces (Medium/BoxFaces.h), W, in the array `borders`.

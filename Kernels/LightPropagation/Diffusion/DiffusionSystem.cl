@@ -70,7 +70,7 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  // Net flux of the known source (emission and first collisions) over 4 pi, [axis][voxel].
+  // Net flux of the known source (emission and first collisions) divided by 4 pi, [axis][voxel].
   const __global float* givenFlux;
   ulong stride;
   // Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell]; not used if DiffusionLayout::faces is 0
@@ -360,7 +360,7 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
 // of MultigridLevel. One work-item per cell of the box's faces.
 //   borders     [cell of the box's faces][BorderNet ... BorderWholeShare]; all but BorderNet are written
 //   source      source of the sweep, W / (length^3 sr)
-//   given_flux  net flux of the known source over 4 pi, if there are angular moments, [channel][x, y, z][voxel]
+//   given_flux  net flux of the known source divided by 4 pi, if there are angular moments, [channel][x, y, z][voxel]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,

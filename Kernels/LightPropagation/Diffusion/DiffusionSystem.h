@@ -83,7 +83,7 @@ public:
     const Buffer<float>* given;   ///< emission and first-collision source, W / (length^3 sr)
     MomentPlaces moments;         ///< memory layout of the angular moments in `path`
     int channel;                  ///< channel of this system
-    /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][voxel]; null: isotropic.
+    /// Net flux of `given` divided by 4 pi, if there are angular moments, [channel][x, y, z][voxel]; null: isotropic.
     const Buffer<float>* givenFlux;
     const Buffer<float>* source; ///< source of the sweep, W / (length^3 sr)
     const Buffer<float>* path;   ///< path integrals of the sweep, W length

@@ -36,7 +36,7 @@ double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marchi
 /// powers are transport that diffusion does not describe.
 struct SweepModel
 {
-  /// Half-range flux of the quadrature over 4 pi (DiffusionLayout::halfRange).
+  /// Half-range flux of the quadrature divided by 4 pi (DiffusionLayout::halfRange).
   double halfRange = 0.25;
   CrossingPattern pattern;                               ///< of the whole grid
   std::array<std::vector<FlatSourceNode>, 3> flatSource; ///< by axis

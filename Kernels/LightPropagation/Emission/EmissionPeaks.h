@@ -58,7 +58,7 @@ bool HasExactEmission(const PropagationProblem& problem);
 SplitEmission SplitOfDomain(const PropagationProblem& problem, const Rgb& comesIn);
 
 // Limits that Split() and MayHaveEmissionPeaks() apply to the brightness of voxels.
-constexpr std::size_t EmissionBrightPart = 64; ///< at most one voxel in so many belongs to a peak
+constexpr std::size_t EmissionBrightPart = 64; ///< at most one voxel in 64 belongs to a peak
 constexpr double EmissionOutshines = 4.0; ///< peaks exceed this multiple of the mean emission of the remaining voxels
 constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted power that all peaks together carry
 

@@ -43,7 +43,8 @@ public:
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 
   /// @param along  must outlive this object
-  /// @param emission  of empty voxels, W / (length^3 sr), [channel][voxel] with the padding of VolumeLayout
+  /// @param emission  emission of the empty voxels, W / (length^3 sr), [channel][voxel] with the padding of
+  ///   VolumeLayout
   VacuumEmission(const SweptDirections& along, std::vector<float> emission);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

@@ -29,7 +29,7 @@ public:
   bool IsLit(int direction) const; ///< whether the direction has incident radiance on a non-periodic face
   /// Incident radiance through `face`, W / (length^2 sr), averaged over the directions that `direction` represents.
   Rgb Incoming(int direction, int face) const { return this->Faces[face] + this->FromFarAway[direction]; }
-  /// Boundary source of a sweep: Incoming() as a function; this object must outlive it
+  /// Boundary source of a sweep: Incoming() as a function object, which this object must outlive
   SweepBoundary Boundary() const;
   /// Incident power per area through each of the box's faces, W / length^2; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;

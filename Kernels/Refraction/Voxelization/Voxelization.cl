@@ -48,7 +48,7 @@ inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
   const long above = (long)ACROSS(to) - ACROSS(from);
   edge e;
   e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
-  // If a column lies exactly on the edge, the infinitesimal move of its samples decides whether it is on the inner
+  // A column exactly on the edge counts as moved by an infinitesimal distance, which decides whether it is on the inner
   // side.
   e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1;
   e.across = right * pitch;

@@ -273,9 +273,9 @@ public:
     }
   }
 
-  /// Queues the conversion of the slab's counts for the mesh that was measured last from whole samples to units of 1 /
-  /// UnitsOfSample of a sample, with the measured difference added. Also marks the mesh's samples as claimed in the
-  /// rows of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
+  /// For the mesh that was measured last: queues the conversion of the slab's counts from whole samples to units of 1 /
+  /// UnitsOfSample of a sample, and the addition of the measured difference. Also marks the mesh's samples as claimed
+  /// in the rows of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
     const SampleRows rows = this->RowsOf(slab);

@@ -162,8 +162,8 @@ inline real aureole_at(real cosine, real depth, __global const float* rows)
   return depth * between_cosines(rows, deep, cosine, AureoleColumns);
 }
 
-// Converts the optical length of a ray as it is marched to the optical length of all its scattering, including the
-// fraction treated as unscattered. The factor is the voxel's own ratio and is used along the whole ray.
+// Factor from the optical length of a ray, in which a fraction of the scattering is treated as unscattered, to the
+// optical length of all scattering along the ray. The voxel's own factor is used for the whole ray.
 inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
   __global const float* straight_on, const ViewedComponents* of, integer voxel, int channel)
 {

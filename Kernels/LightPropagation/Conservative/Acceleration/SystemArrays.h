@@ -90,7 +90,7 @@ private:
   const GhostedMedium Coefficients;
   MomentsWithGhosts OfPath;
   /// Arrays of the block without ghost cells: emission and first-collision source, W / (length^3 sr); net flux of this
-  /// source over 4 pi, if there are angular moments; partial currents of the sweep, W.
+  /// source divided by 4 pi, if there are angular moments; partial currents of the sweep, W.
   Buffer<float> TheGiven, GivenFlux, TheCurrents;
   GhostedBuffer GivenWithGhosts, GivenFluxWithGhosts, SourceWithGhosts, CurrentsWithGhosts;
 };
