@@ -10,8 +10,8 @@
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
-// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
-// linked.
+// This file calls only inline and virtual functions of vtkSMPVRepresentationProxy, so that the library RemotingViews,
+// which needs GLEW, is not linked.
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionProxy.h"

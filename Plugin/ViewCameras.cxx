@@ -10,8 +10,8 @@
 #include "vtkSMProxy.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
-// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
-// linked.
+// This file calls only inline and virtual functions of vtkSMViewProxy, so that the library RemotingViews, which needs
+// GLEW, is not linked.
 #include "vtkSMViewProxy.h"
 
 #include <algorithm>

@@ -26,8 +26,8 @@ struct Picture
   /// `transmittance` only if the light is given by angular moments. Its mean over the channels is 1 - alpha, except
   /// where the block shows the background, which has alpha 1.
   std::vector<float> sceneTransmittance;
-  /// Only for a block, 3 per pixel, may be empty: radiance that is not in `radiance` because blocks in front attenuate
-  /// it by their sceneTransmittance; it passes them unscattered.
+  /// Only for a block, 3 per pixel, may be empty: radiance that passes the blocks in front unscattered. These blocks
+  /// attenuate it by their sceneTransmittance, so it is not included in `radiance`.
   std::vector<float> sharp;
   /// Only for a block, 3 per pixel: correction for light at the surface of thick voxels (SurfaceLight in Backdrop.cxx)
   /// where the ray enters the domain. It is added to the radiance, multiplied by 1 - transmittance of all blocks along

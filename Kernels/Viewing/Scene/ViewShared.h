@@ -69,7 +69,8 @@ typedef struct
   float4 eye;     ///< position of the camera, voxels; w = 0: perspective, 1: parallel projection
   float4 forward; ///< view axis, unit vector in world coordinates
   /// vector from the picture's centre to its right edge, in world coordinates. Perspective: at unit distance from the
-  /// eye. Parallel projection: in lengths. w: shift of the picture's centre (Camera::shift), in units of this vector
+  /// eye. Parallel projection: in units of length. w: shift of the picture's centre (Camera::shift), in units of this
+  /// vector
   float4 right;
   /// vector from the picture's centre to its upper edge, as `right`; w: shift upwards
   float4 up;

@@ -7,8 +7,8 @@
 
 #define DEEPEST 7 // maximum number of halvings of a voxel close to a rectangle
 
-// Solid angle of the rectangle as seen from a point, sr; 0 from behind. Coordinates are along the rectangle's edges and
-// its normal, lengths.
+// Solid angle of the rectangle as seen from a point, sr; 0 from behind. Coordinates, in units of length, are along the
+// rectangle's edges and its normal.
 static float angle_seen(const RectangleInfo* rectangle, float3 from)
 {
   return from.z > 0.0f
