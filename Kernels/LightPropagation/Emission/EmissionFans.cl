@@ -449,7 +449,7 @@ __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float e
   const int aside = max(abs(2 * at[0] + 1 - 2 * s.sourceFirst[u] - s.sourceSize[u]),
     abs(2 * at[1] + 1 - 2 * s.sourceFirst[v] - s.sourceSize[v]));
   const float away = 0.5f * ahead * s.spacing[axis];
-  // Fans light no voxels closer to the emission than their first layer, nor outside their 24th of space.
+  // A fan lights only voxels from its first layer on, and only those in its part (one of 24) of space.
   const bool far = ahead > s.near && aside <= ahead;
   const bool even = agree(&s, faces[first + i], halves[first + i], emitted / fmax(away * away, 1e-30f));
   found[first + i] = !far ? -1.0f : even ? 1.0f : 0.0f;

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Largest distance of the camera, in lengths or voxels; its square does not overflow a float.
+/// Largest distance of the camera, in units of length or in voxels; its square does not overflow a float.
 constexpr double FarthestCamera = 1e15;
 
 std::array<double, 3> Array(const glm::dvec3& v)
