@@ -1,5 +1,5 @@
-// Streaming of light along lines of links, for given isotropic emission of collisions (numerics.md, Eqs. (L7) to
-// (L10)). The host defines the options of LatticeLink.cl and Numerics/Exact.cl.
+// Streaming of light along lines of links, for given light that collisions emit isotropically (numerics.md, Eqs. (L7)
+// to (L10)). The host defines the options of LatticeLink.cl and Numerics/Exact.cl.
 //
 // Light moves up and down a line, because links reflect a fraction of it. The voxels of a line up to a given voxel are
 // described by two numbers: U, the light that they send up if none arrives from above, and R, the fraction of light

@@ -16,9 +16,9 @@
 
 namespace tyndall
 {
-/// Streaming of light along lines of links, for given isotropic emission of collisions (numerics.md, Eqs. (L7) to
-/// (L10)). Each line is solved directly, by an upward pass and a downward pass. A line that crosses several blocks is
-/// solved in pieces: each rank runs the upward pass of its pieces, the rank in whose block the line begins joins the
+/// Streaming of light along lines of links, for given light that collisions emit isotropically (numerics.md, Eqs. (L7)
+/// to (L10)). Each line is solved directly, by an upward pass and a downward pass. A line that crosses several blocks
+/// is solved in pieces: each rank runs the upward pass of its pieces, the rank in whose block the line begins joins the
 /// pieces, and each rank runs the downward pass. The result equals that of one rank, to rounding.
 class LinesOfLinks
 {

@@ -64,7 +64,7 @@ PropagationSettings AtQuality(const Domain& domain, Quality quality, Propagation
   {
     return settings;
   }
-  // Without angular moments the medium is solved by the similarity relation.
+  // Without angular moments the solver uses the extinction of the similarity relation, sigma_a + sigma_s (1 - g).
   const double own = domain.IsEmpty() ? 0.0
     : settings.angularDegree == 0
     ? SumOverVoxels(medium.grid, [&](std::size_t i) { return double(medium.TransportSigmaT(i, 0)); })
