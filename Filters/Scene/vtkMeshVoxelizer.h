@@ -81,8 +81,8 @@ public:
   ///@}
 
   ///@{
-  /// Bounds of the voxel grid, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels
-  /// centred on the meshes, as tight as Margin allows.
+  /// Bounds of the voxel grid, (xmin, xmax, ymin, ymax, zmin, zmax), in units of length. Default all 0: a box of cubic
+  /// voxels centred on the meshes, as tight as Margin allows.
   tyndallSetRange6Macro(ModelBounds, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector6Macro(ModelBounds, double);
   ///@}
@@ -150,8 +150,8 @@ public:
   ///@}
 
   ///@{
-  /// Feature size of the noise (IndexNoise, ScatteringNoise), length. Default 0: an eighth of the box's longest edge.
-  /// Valid [0, infinity).
+  /// Feature size of the noise (IndexNoise, ScatteringNoise), in units of length. Default 0: an eighth of the box's
+  /// longest edge. Valid [0, infinity).
   tyndallRangeMacro(NoiseSize, double, 0.0, tyndall::AnyHigh);
   ///@}
 

@@ -20,7 +20,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Radius of the drawn ball, length. The emitted light does not depend on ShapeSize. Default 0.02, valid above 0.
+  /// Radius of the drawn ball, in units of length. The emitted light does not depend on ShapeSize. Default 0.02, valid
+  /// above 0.
   tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 

@@ -52,7 +52,8 @@ struct AskedView
 {
   Camera camera;                ///< camera in the scene's coordinates; replaces the filter's camera
   std::array<int, 2> size = {}; ///< columns and rows of pixels; replaces ImageSize
-  /// Distance along the view axis at which an opaque surface ends each pixel's ray, length; empty: no ray ends.
+  /// Distance along the view axis at which an opaque surface ends each pixel's ray, in units of length; empty: no ray
+  /// ends.
   std::vector<float> ends;
   double exposure = 0.0; ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
   /// Position of the medium in the larger grid of which it is a block; no value: the medium is a whole grid.

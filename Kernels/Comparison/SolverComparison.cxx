@@ -485,7 +485,8 @@ void MarkPareto(std::vector<ComparisonRow>& rows)
 
 namespace
 {
-/// Finds the row to recommend for a quantity, among those that filters can repeat; null if there is none.
+/// Finds the row to recommend for a quantity (MarkRecommended). Considers only rows whose run a user can repeat with
+/// filters; null if there is none.
 ComparisonRow* BestOf(std::vector<ComparisonRow>& rows, ComparedQuantity quantity, double acceptedError)
 {
   const auto isBetter = [=](const ComparisonRow& a, const ComparisonRow& b) {

@@ -45,8 +45,8 @@ void CheckComponents(const Field& field, const char* name)
 
 namespace
 {
-/// Largest spacing, length. The smallest spacing is its inverse. Products of several areas then stay within the range
-/// of doubles.
+/// Largest spacing, in units of length. The smallest spacing is its inverse. Products of several areas then stay within
+/// the range of doubles.
 constexpr double LongestSpacing = 1e30;
 constexpr double MostUnequal = 1e9; ///< largest ratio of the longest to the shortest spacing
 

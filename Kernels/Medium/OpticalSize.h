@@ -10,8 +10,9 @@ namespace tyndall
 /// Optical thickness and mean free path of a medium.
 struct OpticalSize
 {
-  double thickness = 0.0;    ///< largest optical thickness, from face to face, of any row of voxels along x, y or z
-  double meanFreePath = 0.0; ///< 1 / (mean extinction of the voxels that are not empty), length; 0 if all are empty
+  double thickness = 0.0; ///< largest optical thickness, from face to face, of any row of voxels along x, y or z
+  /// 1 / (mean extinction of the voxels that are not empty), in units of length; 0 if all are empty
+  double meanFreePath = 0.0;
 };
 
 /// Optical size of a medium with extinction proportional to a density.

@@ -55,7 +55,7 @@ double ShortestEdge(const Grid& grid)
 
 /// Computes the source function and the extinction of one voxel. With coloured extinction each channel is weighted by
 /// its own opacity, because one alpha serves all three.
-/// @param edge  shortest edge of a voxel, length
+/// @param edge  shortest edge of a voxel, in units of length
 void FindSource(const Medium& medium, const Field& fluence, std::size_t voxel, double edge, SourceFunction& found)
 {
   std::array<double, 3> sigma_t, opacity;

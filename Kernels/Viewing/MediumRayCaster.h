@@ -118,9 +118,9 @@ public:
 
   /// Renders the picture. The samples have been packed by the constructor, or are packed here if there are shadow rays
   /// or if the sources depend on the camera.
-  /// @param ends  distance along the view axis at which an opaque surface ends each pixel's ray, length; 1e30 if no
-  ///   surface does; empty: no ray ends. What the surface hides, including the background, is not shown: alpha is 1 -
-  ///   transmittance up to the surface. Reflected and mirrored rays are not ended.
+  /// @param ends  distance along the view axis at which an opaque surface ends each pixel's ray, in units of length;
+  ///   1e30 if no surface does; empty: no ray ends. What the surface hides, including the background, is not shown:
+  ///   alpha is 1 - transmittance up to the surface. Reflected and mirrored rays are not ended.
   /// @param block  set if the medium is a block of a larger grid: the picture then holds the contribution of this block
   ///   (Blocks/BlockPixels.h); requires CastsBlocks(). Null: the medium is the whole domain
   /// @throws InvalidInput for a degenerate camera, or if `ends` does not have one value per pixel; Aborted

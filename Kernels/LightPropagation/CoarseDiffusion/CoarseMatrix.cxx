@@ -18,7 +18,7 @@ constexpr double Marshak = 2.0;
 struct Level
 {
   std::array<int, 3> size;
-  std::array<std::vector<double>, 3> widths; ///< edges of cells along each axis, length
+  std::array<std::vector<double>, 3> widths; ///< edges of cells along each axis, in units of length
   std::vector<double> sigmaT;                ///< mean extinction of each cell, 1/length
 
   std::size_t At(int x, int y, int z) const { return (std::size_t(z) * size[1] + y) * size[0] + x; }
@@ -71,7 +71,7 @@ Level Coarser(const Level& fine)
 
 /// Edge of the box around a cell that is one mean free path thick (W of numerics.md, Eq. (76h)), interpolated between a
 /// thinner and a thicker box.
-/// @param edge, wide  edges of the thinner and the thicker box, length
+/// @param edge, wide  edges of the thinner and the thicker box, in units of length
 /// @param thin, thick  optical width of the thinner and of the thicker box, divided by its edge, 1/length
 double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
 {

@@ -16,8 +16,8 @@ typedef struct
   bool inside; // whether the voxel lies in the emitting box
 } lit_voxel;
 
-// A medium and emitting box with axes permuted and some of them reflected, so that the box lies in the same octant of
-// directions from every voxel: the computed light then has the symmetries of the scene.
+// A medium and its emitting box with axes permuted, and some of them reflected, so that the box lies in the same octant
+// of directions from every voxel. The computed light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
@@ -131,8 +131,8 @@ static real mean_left(real tau, real* left)
   return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
 }
 
-// State of a ray from a point in a voxel to the emitting box. Positions on the ray are distances from that point,
-// length.
+// State of a ray from a point in a voxel to the emitting box. Positions on the ray are distances from that point, in
+// units of length.
 typedef struct
 {
   real rate[3];       // voxels crossed along each axis per length of the ray

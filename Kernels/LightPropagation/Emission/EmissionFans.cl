@@ -90,13 +90,13 @@ typedef struct
   float low[2], high[2];
 } line_packet;
 
-// Whether a packet of a fan's rays may still reach voxels of the 24th of space that the fan lights, in this layer or
-// beyond.
+// Whether a packet of a fan's rays may still reach voxels, in this layer or beyond, in the part of space (one of 24)
+// that the fan lights.
 static bool is_wanted(
   const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
 {
   const float near = layer - packet->point[0], far = near + 1.0f;
-  // lateral limit of this 24th of space in this layer, voxels from the emitting box's centre
+  // lateral limit, in this layer, of the part of space that the fan lights, voxels from the emitting box's centre
   const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0];
   bool wanted = true;
   for (int a = 1; a < 3; ++a)
@@ -266,8 +266,8 @@ static void add_lines(const turned_scene* s, real got, real aside, float up, rea
   sums[3] += part * up;
 }
 
-// For adjacent voxels, or adjacent cells of the face at the end of the layers: adds the mean light of the rays of fan p
-// that cross each of them to `sums` (numerics.md, Eqs. (40a), (40b)).
+// For each of some adjacent voxels, or adjacent cells of the face at the end of the layers: adds to `sums` the mean
+// light of those rays of fan p that cross it (numerics.md, Eqs. (40a), (40b)).
 //   layer       layer of voxels, from 0; fan->layers: the face
 //   at, row_at  positions of the voxels along the second and the third axis
 static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,
@@ -300,10 +300,10 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// Space is divided into 24 parts, one for each cyclic permutation and each reflection of the axes. Returns the number
-// of parts that contain a voxel; it is more than 1 if the voxel lies on a border between parts. Returns 0 if the voxel
-// is not in the part whose fans are traced, in which no distance is negative and the distance along the first axis is
-// the largest.
+// Space is divided into 24 parts, one for each combination of a cyclic permutation and a reflection of the axes.
+// Returns the number of parts that contain a voxel; it is more than 1 if the voxel lies on a border between parts.
+// Returns 0 if the voxel is not in the part whose fans are traced, in which no distance is negative and the distance
+// along the first axis is the largest.
 //   distance  from the centre of the emitting box along each axis, half voxels
 static int parts_of_space(const int* distance)
 {

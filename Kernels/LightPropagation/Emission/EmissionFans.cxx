@@ -52,9 +52,9 @@ public:
   }
 
   /// Coordinate of point n along a dimension, 0 to 1. The sequence is shifted and folded (baker's transform): the mean
-  /// of the first 2^n points is 1/2 for every n, whereas that of the original sequence is lower by half a cell (an
-  /// eighth for four points). The shift, as a fraction of a cell, is never near 0 or 1/2, where the fold would make
-  /// points coincide.
+  /// of the first 2^n points is 1/2 for every n, whereas that of the original sequence is lower by half the distance of
+  /// neighbouring points (1/8 for four points). The shift, as a fraction of this distance, is never near 0 or 1/2,
+  /// where the fold would make points coincide.
   double At(int n, int dimension) const
   {
     int place = 0;
@@ -99,7 +99,7 @@ public:
 
   std::array<int, 3> First, Size;
 
-  /// The point of the box, voxels, at given quantiles of the emission. The first quantile chooses a layer across the
+  /// The point of the box, in voxels, at given quantiles of the emission. The first quantile chooses a layer across the
   /// first axis, the second one a row of that layer, the third one a point of that row.
   /// @param parts  quantiles, 0 to 1
   /// @param swapped  the third axis comes before the second

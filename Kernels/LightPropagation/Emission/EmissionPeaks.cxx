@@ -415,8 +415,8 @@ public:
     this->Sums = domain.Sum(this->Sums);
   }
 
-  /// Whether the brightest `most` voxels may carry half of the emitted power by emission above the limit that Split()
-  /// uses. An upper bound: if one voxel of a bin is among the brightest, all voxels of that bin count.
+  /// Whether half of the emitted power may be emission of the brightest `most` voxels above the limit that Split()
+  /// uses. This emission is overestimated: if one voxel of a bin is among the brightest, all voxels of that bin count.
   bool IsDominatedByFewVoxels(double most) const
   {
     double all = 0.0, bright = 0.0, counted = 0.0, voxels = 0.0;

@@ -17,7 +17,7 @@ struct EmissionPeak
   std::array<int, 3> size = {};  ///< size of the bounding box, voxels
   std::vector<float> emission;   ///< emission in the bounding box, W / (length^3 sr), [channel of 3][voxel, x fastest]
 
-  double Width(const Grid& grid) const ///< longest edge of the bounding box, length
+  double Width(const Grid& grid) const ///< longest edge of the bounding box, in units of length
   {
     return std::max(
       { this->size[0] * grid.spacing[0], this->size[1] * grid.spacing[1], this->size[2] * grid.spacing[2] });

@@ -77,8 +77,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
 }
 
 // Solid angle, seen from the voxel's centre, of each side of the emitting box through which light arrives; 0 for the
-// other sides. At least an eighth of the largest one, since a side's solid angle is larger from other points of the
-// voxel.
+// other sides. Values below an eighth of the largest are raised to that eighth, since a side's solid angle may be
+// larger from other points of the voxel.
 static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
@@ -122,7 +122,7 @@ typedef struct
 } box_side;
 
 // Selects a side of the emitting box with a probability in proportion to its solid angle.
-//   choice  coordinate of the lattice, 0 to 1, times `total`
+//   choice  first coordinate of a lattice point, 0 to 1, times `total`
 //   total   sum of the solid angles of the six sides
 static box_side choose_side(const float* solid_angles, float total, real choice)
 {
@@ -185,10 +185,10 @@ static real aim_at_side(
   return solid_angle;
 }
 
-// Gathers light along rays to the emitting box. A lattice provides points in the voxel and directions that are uniform
-// over the solid angles of the box's sides: its first coordinate selects the side, in proportion to its solid angle.
-// The remainder of the first coordinate (u, 0 to 1) and the second coordinate (v) parametrise the angles by tan(x / 2)
-// and sin (aim_at_side).
+// Gathers light along rays to the emitting box. The points of a lattice in five dimensions provide positions in the
+// voxel, and directions that are uniform over the solid angles of the box's sides. The first coordinate selects a side,
+// with a probability proportional to the side's solid angle. The remainder of the first coordinate (u, 0 to 1) and the
+// second coordinate (v) parametrise the angles by tan(x / 2) and sin (aim_at_side).
 //   from, end  range of rays, a multiple of REAL_WIDTH
 //   points     lattice, [u, v, x, y, z][MOST]
 //   sums       mean over the rays, W / length^2, [channel][fluence, net flux along x, y, z]
@@ -232,7 +232,7 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
 }
 
 // Transformations of the scene (permutations and reflections of its axes) that make equivalent voxels and faces receive
-// equal light: one only, unless a voxel lies symmetrically with respect to the emission.
+// equal light. There is only one for a voxel, unless the voxel lies symmetrically with respect to the emission.
 typedef struct
 {
   int permutations[6][3]; // permutations of the scene's axes
@@ -282,7 +282,7 @@ static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_tur
   }
 }
 
-// Mean of the light along rays [from, end) of the lattice, over all transformations `ways` of the scene.
+// Mean of the light along the rays of the lattice points [from, end), and over all transformations `ways` of the scene.
 static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
@@ -334,9 +334,9 @@ static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
   return close;
 }
 
-// Gathers light in a voxel or through a face with as many rays as the accepted error requires. All these rays are
-// traced in each transformation of the scene, since half of a lattice in two transformations is less accurate than the
-// complete lattice in one.
+// Gathers light in a voxel or through a face with as many rays as the accepted error requires. If the scene has several
+// transformations (ways_to_turn), all rays are traced in each of them. Half of the rays in each of two transformations
+// would be less accurate than all rays in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {

@@ -113,8 +113,9 @@ private:
     }
     const double all = AllRays * (UsualError / this->Error) * (UsualError / this->Error);
     this->Scene.fewest = FewestFor(static_cast<double>(grid.VoxelCount()), all, FewestRays);
-    // More rays in and next to the box: most of the emitted power may leave through the nearest faces, and an error
-    // there would change all other light, because powers are normalised to add up.
+    // Voxels and face cells in the box or next to it have more rays: most of the emitted power may leave through the
+    // nearest faces of the grid, and an error there would change all other light, because powers are normalised to add
+    // up.
     const std::array<int, 3>& size = this->Peak.size;
     // Number of voxels in the emitting box and next to it
     const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0);

@@ -98,7 +98,8 @@ void AddOwn(const UncollidedVolume& volume, const VolumeLayout& whole, int parts
   volume.device.Finish(); // the copy must end before its source is released
 }
 
-/// The largest powers of all ranks, which differ by rounding on unlike devices. Collective.
+/// For each power of the tally, the largest value of any rank. The values differ by rounding if ranks have different
+/// devices. Collective.
 SweepTally LargestOf(const Domain& domain, const SweepTally& own)
 {
   std::vector<double> powers(own.onTheWay.begin(), own.onTheWay.end());

@@ -18,7 +18,7 @@ public:
 
   int Along() const { return this->Axis; }
   std::size_t Count() const { return static_cast<std::size_t>(this->TheMedium.grid.size[this->Axis]); }
-  double Height() const { return this->TheMedium.grid.spacing[this->Axis]; } ///< height of a layer, length
+  double Height() const { return this->TheMedium.grid.spacing[this->Axis]; } ///< height of a layer, in units of length
   /// Area of the slab, normal to the axis of the layers, length^2.
   double Across() const;
   /// Index of a layer's voxel in the first column of voxels.

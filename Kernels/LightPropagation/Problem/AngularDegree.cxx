@@ -113,7 +113,8 @@ AngularDetail AngularDetailOf(const Medium& medium, int channels)
 int AngularDegreeFor(const AngularDetail& detail, const Grid& grid, const PropagationSettings& settings, bool slab,
   std::size_t voxels, const DeviceMemory& memory)
 {
-  // In thin media single scattering dominates, so a narrower part of the peak is treated as unscattered.
+  // In thin media most light is scattered only once. More moments are then used, and a narrower part of the forward
+  // peak is treated as unscattered.
   const bool thin = detail.moments[1] > SomewhatForward && MeanThickness(grid, detail.extinction[0]) < Thick;
   const int usual = HighestThatFits(voxels, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0

@@ -171,8 +171,9 @@ double LeakAlong(double longest, double extrapolations)
   return Pi * Pi / 3.0 / (extrapolated * extrapolated);
 }
 
-/// Sum of the extrapolation distances at both faces normal to an axis, mean free paths. A reflecting face acts as if
-/// the medium continued beyond it, at most as its mirror image.
+/// Sum of the extrapolation distances at both faces normal to an axis, mean free paths. The distance grows with the
+/// albedo of the face. Its limit is that of a perfect mirror: the medium's thickness plus the extrapolation distance at
+/// the opposite face.
 double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {

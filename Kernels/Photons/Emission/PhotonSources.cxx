@@ -253,7 +253,8 @@ private:
   void SetShares()
   {
     constexpr int samples = 512;
-    // Smallest fraction of the samples for a point set that may contribute, even if no test sample of it did
+    // Smallest fraction of the samples for a face, or for the part of the rectangle inside the volume, if light may
+    // start there, even if all its test samples had no power
     constexpr double least = 0.01;
     std::array<double, Parts> shares = {};
     double sum = 0.0;

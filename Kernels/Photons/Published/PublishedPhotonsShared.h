@@ -14,7 +14,7 @@ typedef struct
   IndexGrid known;
   int first[3];      ///< first voxel of the block in the domain
   int knownFirst[3]; ///< first voxel of the region `known` in the domain
-  float spacing[3];  ///< edges of a voxel, length
+  float spacing[3];  ///< edges of a voxel, in units of length
   int stepLimit;     ///< maximum number of steps of a photon
 } PublishedMarchInfo;
 

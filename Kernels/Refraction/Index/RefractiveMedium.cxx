@@ -20,7 +20,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ShortestEdge = 1e-18; ///< minimum edge of a voxel, length
+constexpr double ShortestEdge = 1e-18; ///< minimum edge of a voxel, in units of length
 }
 
 void Check(const Material& material, const std::string& name)

@@ -45,7 +45,7 @@ struct Perturbation
   double index = 0.0;
   /// Relative amplitude of sigma_s, in [0, 1]: sigma_s becomes sigma_s (1 + scattering * noise).
   double scattering = 0.0;
-  double size = 1.0; ///< size of the noise's features, length, > 0
+  double size = 1.0; ///< size of the noise's features, in units of length, > 0
   std::uint32_t seed = 0;
 };
 

@@ -82,8 +82,8 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
 
 // Adds one material to the voxels of a slab, the part of the box that is processed at a time. A voxel of a single
 // material gets exactly the material's values.
-//   inside    for each voxel, the number of samples inside the material (with fractions), times UnitsOfSample: 0 to
-//             slab.samples
+//   inside    for each voxel, the number of samples inside the material, in units of 1 / UnitsOfSample of a sample;
+//             slab.samples if all are inside
 //   covered   sum of these numbers over all materials added so far
 //   ior       n in the entire box; the other arrays cover the slab
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,

@@ -39,8 +39,8 @@ struct MeshTopology
   Edge firstDisagreeingEdge = {};          ///< the disagreeing edge whose ends have the lowest point indices
   std::size_t degenerateTriangles = 0;     ///< number of triangles without area
   std::size_t firstDegenerateTriangle = 0; ///< index of the first triangle without area
-  /// Enclosed volume, length^3, negative if the corners run clockwise as seen from outside; without meaning if
-  /// disagreeingEdges is above 0.
+  /// Enclosed volume, in units of length^3. It is negative if the corners of triangles run clockwise as seen from
+  /// outside, and has no meaning if disagreeingEdges is above 0.
   double enclosedVolume = 0.0;
 };
 

@@ -8,7 +8,7 @@ SHARED_BEGIN
 /// run `stride` voxels after the one before.
 typedef struct
 {
-  float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, length
+  float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, in units of length
   /// Numbers of voxels of the box: before the first voxel of the slab, in a run, and from the beginning of a run to
   /// that of the next.
   ulong first, length, stride;

@@ -187,8 +187,8 @@ double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
 struct Column
 {
   std::array<Coefficients, 3> voxels;
-  double edge;   ///< edge of a voxel along the face's normal, length
-  double across; ///< mean edge of a voxel along the face, length
+  double edge;   ///< edge of a voxel along the face's normal, in units of length
+  double across; ///< mean edge of a voxel along the face, in units of length
 
   /// Coefficients at a depth, in voxels from the face: interpolated between voxel centres, constant between the face
   /// and the first centre.

@@ -14,7 +14,8 @@ struct Camera
   std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 }; ///< up direction of the picture; not parallel to the view direction
   double viewAngle = 30.0;                          ///< full vertical angle of view, degrees, in (0, 180)
   bool parallelProjection = false;                  ///< whether rays are parallel instead of starting at `position`
-  double parallelScale = 1.0;                       ///< half the picture's height in a parallel projection, length, > 0
+  /// Half the height of the picture in a parallel projection, in units of length, > 0
+  double parallelScale = 1.0;
   /// Width over height of the picture; 0: that of the image size, for square pixels.
   double aspect = 0.0;
   /// Offset of the picture's centre from the focal point, to the right and upwards, in units of half the picture's

@@ -105,7 +105,7 @@ typedef struct
 /// Parameters of the surface, the table and bent rays.
 typedef struct
 {
-  float4 spacing; ///< edges of a voxel, length
+  float4 spacing; ///< edges of a voxel, in units of length
   /// x: n^2 at the reflecting surface; y: its reflectance, if constant; z: distance in voxels from the surface at which
   /// the indices on both sides are read
   float4 surface;
@@ -185,7 +185,7 @@ typedef struct
 /// Parameters of the kernels of shadow rays.
 typedef struct
 {
-  float4 spacing; ///< edges of a voxel, length
+  float4 spacing; ///< edges of a voxel, in units of length
   /// Position of the camera relative to the lower corner of the whole domain, world coordinates; w = 0: perspective, 1:
   /// parallel projection.
   float4 eye;

@@ -20,14 +20,14 @@ namespace
 {
 struct RectangleSample
 {
-  glm::dvec3 place; ///< position relative to the grid's lower corner, length
+  glm::dvec3 place; ///< position relative to the grid's lower corner, in units of length
   double share;     ///< fraction of the light's power that the sample stands for
 };
 
 /// Appends sample points of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle
 /// is first divided into quarters, recursively, while it is longer than the box and than its distance from the box.
 /// Parts near the box thus get more samples.
-/// @param middle  centre of the rectangle relative to the grid's lower corner, length
+/// @param middle  centre of the rectangle relative to the grid's lower corner, in units of length
 /// @param share   fraction of the light's power
 /// @param whole   true for the light, false for a quarter of it
 void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm::dvec3, 2>& edges, int perEdge,

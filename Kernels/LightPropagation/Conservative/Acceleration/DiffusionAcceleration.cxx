@@ -143,8 +143,8 @@ Deposit DiffusionAcceleration::DepositOfSweep()
   return { whole.path, nullptr, &this->Arrays.PartialCurrents(), nullptr, whole.faceOut, whole.spreadsAside };
 }
 
-/// Sweeps once: carries the light of the current source and the boundary light, which is incident in every sweep, to
-/// path integrals and partial currents.
+/// Sweeps once: transports the light of the current source and the boundary light, which is incident in every sweep,
+/// and computes path integrals and partial currents.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   this->TheDomain.Collective([&] {
@@ -189,7 +189,7 @@ void DiffusionAcceleration::ShapeSource()
   });
 }
 
-/// Reflects the uncollided light that left through the box faces; its reflected power is incident in every sweep.
+/// Reflects the uncollided light that left through the box faces. The reflected power is incident in every sweep.
 void DiffusionAcceleration::ReflectUncollided()
 {
   TransportParts& parts = this->Parts;

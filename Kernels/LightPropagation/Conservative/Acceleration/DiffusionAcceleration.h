@@ -23,8 +23,8 @@ class DiffusionAcceleration : public Iteration
 {
 public:
   /// @param parts  must outlive this object; made with IterationScheme::Dsa
-  /// @param kept  light of the previous solve (WarmStart.h), must outlive this object. Null, which it then is on all
-  ///   ranks: the solve starts from zero and keeps no light
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this object. Null on all ranks: the solve
+  ///   starts from zero and keeps no light
   explicit DiffusionAcceleration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 

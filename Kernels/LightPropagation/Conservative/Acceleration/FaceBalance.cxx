@@ -112,8 +112,8 @@ double FaceBalance::Reflect(int iteration, const Rgb& given)
     {
       change = std::max(change, this->ReflectChannel(iteration, c, given[c]));
     }
-    // The diffusion solution does not have the uneven pattern of a sweep's rays, so its reflected power is passed to
-    // LetIn() as uncollided light.
+    // The power of a sweep varies from cell to cell with the number of rays, and LetIn() corrects this in its first
+    // argument. The power of the diffusion solution does not vary in this way; it is passed as the second argument.
     this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   });
   return this->TheDomain.Max(change); // maximum over ranks, whose devices may round differently

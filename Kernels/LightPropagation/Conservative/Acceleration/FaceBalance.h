@@ -84,7 +84,7 @@ public:
 
   /// Reads the outgoing power of the last sweep, and writes it, with the reflected powers, to Rows().
   void TakeSwept();
-  /// Power in one channel by cell of the faces of the block with ghost cells, W, [FaceCame ... FaceLeaves][cell]
+  /// Powers of one channel in each face cell of the block with ghost cells, W, [FaceCame ... FaceLeaves][cell]
   /// (DiffusionShared.h): power reflected into the last sweep, reflected power of uncollided light, outgoing power of
   /// the sweep, and outgoing power of the diffusion solution. 0 at ghost cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
@@ -109,7 +109,7 @@ public:
   std::vector<double> LeftWithoutPattern(const std::array<Rgb, 6>& incoming, const Medium& medium) const;
 
 private:
-  /// A cell of the box faces at a voxel of this rank. held: its index among the cells of the faces of the block with
+  /// A cell of the box faces at a voxel of this rank. held: index of the cell among the face cells of the block with
   /// ghost cells; whole: its index among the cells of the box faces.
   struct OwnCell
   {
@@ -127,7 +127,7 @@ private:
   const std::size_t Cells,
     HeldCells; ///< number of cells of the box faces, and of the faces of the block with ghost cells
   std::vector<OwnCell> OwnCells;
-  /// By channel: power by cell of the faces of the block with ghost cells, as Rows() returns it.
+  /// For each channel, the powers that Rows() returns.
   std::vector<Buffer<float>> OfBlock;
   Rgb PowerGivenBack = {};
   std::vector<double> CameBack, GivenBackByCell, LeftUncollided;

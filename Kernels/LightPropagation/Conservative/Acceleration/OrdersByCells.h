@@ -27,15 +27,15 @@ public:
 
   /// Adds the path integrals of the last sweep, and the predicted sum of all later orders, to the fluence, and computes
   /// the next source.
-  /// @param ledger  receives the absorbed power, and a correction for the power by which the last sweep overestimated
-  ///   the escape
-  /// @param onTheWay  power in flight around periodic axes after the sweep, W by channel, including light that no sweep
-  ///   continues
+  /// @param ledger  receives the absorbed power, and a correction of the escaped power, which the last sweep
+  ///   overestimated
+  /// @param onTheWay  power of rays that still wrap around periodic axes after the sweep, W by channel, including rays
+  ///   that no later sweep continues
   /// @param guess  path integrals of all later orders, W length, used instead of the coarse solution; null: solve
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
-  /// Whether the coarse solution includes power in flight around periodic axes. True if all axes are periodic, because
-  /// this power then cannot escape.
+  /// Whether the coarse solution includes the power of rays that still wrap around periodic axes. True if all axes are
+  /// periodic, because this power then cannot escape.
   bool ForeseeWay() const { return this->Closed; }
 
   /// Copy of `ledger` plus the predicted escaped power of all later orders.

@@ -33,7 +33,7 @@ typedef struct
   float intensity;
   /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
   float scale;
-  float diagonal; ///< diagonal of a voxel, length
+  float diagonal; ///< diagonal of a voxel, in units of length
   /// Layout of the cells of the box's faces, as in BoxFaceLayout: faceFirst is the index of the first cell of each
   /// face; faceStep[a][b] is the index difference between neighbouring cells along axis b in a face normal to axis a.
   int faceFirst[6], faceStep[3][3];

@@ -149,7 +149,7 @@ public:
   /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
   /// (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
-  double Diagonal() const; ///< diagonal of a voxel, length
+  double Diagonal() const; ///< diagonal of a voxel, in units of length
 
   /// Compiles a kernel with the options of LampBeams.cl.
   /// @param source  source of LampBeams.cl, or of a file with the same options

@@ -84,7 +84,7 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
 
 // Whether a cell must be halved. The rectangle's solid angle varies fast near the rectangle's border and, for a small
 // rectangle, with the inverse square of the distance.
-//   before  extent of the voxel in front of the rectangle's plane, length
+//   before  extent of the voxel in front of the rectangle's plane, in units of length
 static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level, float before)
 {
   const float3 normal =
