@@ -11,10 +11,10 @@
 
 namespace tyndall
 {
-/// Crossing pattern of a quadrature: power of the rays that cross a voxel face at uniform radiance, divided by its mean
-/// over the grid (numerics.md, Eq. (65)). It differs slightly from 1, because rays repeat a pattern of moves that
-/// crosses some faces more often than others. For faces perpendicular to an axis it is the sum of two table entries,
-/// one for the voxel's index along each of the two other axes.
+/// Crossing pattern of a quadrature: the power that its rays carry through a voxel face at uniform radiance, divided by
+/// the mean over all such faces (numerics.md, Eq. (65)). It differs slightly from 1, because rays repeat a pattern of
+/// moves that crosses some faces more often than others. For faces perpendicular to an axis it is the sum of two table
+/// entries, one for the voxel's index along each of the two other axes.
 struct CrossingPattern
 {
   std::vector<float> values;

@@ -10,8 +10,8 @@
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// Largest acceptable difference between the light of the first and of the second half of the fans, divided by
-// EmissionInfo::uneven times their sum. It is above 1, since the sum is more accurate than the difference of the halves
+// The light of the first and that of the second half of the fans agree if their difference is at most this factor times
+// EmissionInfo::uneven times their sum. The factor is above 1, since the sum is more accurate than the difference
 // suggests.
 #define OF_HALVES 3.0f
 // If the light of all fans is less than this fraction of their light without extinction, the difference of the halves

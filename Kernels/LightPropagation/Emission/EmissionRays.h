@@ -46,7 +46,7 @@ private:
 /// Adds to a deposit the uncollided flux of a localised emission, which every voxel gathers along straight rays.
 /// (Kobayashi et al. 2001, problem 1, shows the ray effects of a coarse quadrature for such an emission.)
 ///
-/// Computes the mean over each voxel of the integral of radiance over the solid angle of the peak's bounding box
+/// Integrates the radiance over the solid angle of the peak's bounding box, and averages this integral over each voxel
 /// (numerics.md, Eq. (40)), with exact optical lengths. Points in the voxel and directions form a rank-1 lattice in
 /// five dimensions. Each voxel starts with 32 to 4096 rays, more for smaller grids and smaller errors. The number is
 /// doubled, up to 4096, while the two halves of a voxel's rays differ by more than `error`. If the grid is so large

@@ -31,7 +31,8 @@ typedef struct
   /// Number of layers, across the first axis, of voxels far enough from the emission to use fans, up to the face of the
   /// grid; 0: none
   int layers;
-  /// Index, among the cells of all faces of the grid, of the first cell of the face at the end of the layers
+  /// Index of the first cell of the face at the end of the layers; the cells of all faces of the grid are numbered
+  /// together
   int faceFirst;
   /// Number of rays of a fan along the second axis (lines, a multiple of 16) and the third axis (rows)
   int lines, rows;

@@ -13,8 +13,8 @@ namespace
 /// Number of directions per cube face that are tested as incident directions, in addition to those of the quadrature.
 constexpr int FromPerFace = 144;
 
-/// Whether `omega` lies in a fixed one of the 48 parts of the sphere that are images of each other under rotations and
-/// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
+/// Whether `omega` lies in one particular part of the sphere, of which the 48 rotations and reflections of the cube
+/// make the whole sphere. A quadrature, and its functions of each degree, have the same symmetry.
 bool IsInOnePart(const std::array<double, 3>& omega)
 {
   constexpr double Rounding = 1e-12;

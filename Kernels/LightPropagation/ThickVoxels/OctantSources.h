@@ -70,8 +70,8 @@ public:
   void Find(const Buffer<float>& source, const BeyondFaces& beyond = {});
 
 private:
-  /// Power of the rays of a set of directions that cross each voxel face at uniform radiance, relative to its mean
-  /// (SweepModel.h).
+  /// For each voxel face, the power that rays of a set of directions carry through it at uniform radiance, divided by
+  /// the mean over faces (SweepModel.h).
   struct Crossings
   {
     Buffer<float> values;

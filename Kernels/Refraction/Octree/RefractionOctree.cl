@@ -69,7 +69,7 @@ __kernel void min_max_of_voxels(
   nodes[first + index_of(node, size)] = range;
 }
 
-// Computes the ranges (least and largest value) of the nodes of one level from those of the level below.
+// Computes the range (least and largest value) in each node of one level from the ranges of the level below.
 //   below  index of the first node of the level below
 __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 children_size, ulong first, int4 size)
 {

@@ -137,7 +137,7 @@ private:
   const SampleColumns& Columns;
 };
 
-/// Finds the winding numbers of a mesh at the samples in some rows of voxels of a box of the grid.
+/// Finds the winding numbers of a mesh at the samples in some voxel rows of a box in the grid.
 /// @param mesh      mesh on the lattice that starts at the box's first voxel, as do the columns
 /// @param rows      flag of each row of voxels along columns.up: nonzero to examine the row
 /// @param inverted  whether the corners of triangles run clockwise as seen from outside
@@ -359,7 +359,7 @@ int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::s
   return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
 }
 
-/// Counts the samples of each voxel of a box inside each of several meshes, slab by slab: a slab is the set of voxel
+/// For each voxel of a box, counts the samples inside each of several meshes, slab by slab: a slab is the set of voxel
 /// rows whose samples are held at a time.
 class Voxelization
 {

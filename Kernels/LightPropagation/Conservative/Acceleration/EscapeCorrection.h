@@ -17,8 +17,8 @@ class EscapeCorrection
 {
 public:
   /// @param layout, scattering, sigma_t  layout and coefficients of the medium; must outlive this object
-  /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 along the finer quadrature, and
-  ///   along that of scattered light (TransportParts::FindEvenSky), W length, [channel][voxel]
+  /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 (TransportParts::FindEvenSky),
+  ///   swept along the finer quadrature and along that of scattered light, W length, [channel][voxel]
   EscapeCorrection(Device& device, const VolumeLayout& layout, const TruncatedScattering& scattering,
     const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
