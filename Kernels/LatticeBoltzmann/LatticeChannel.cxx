@@ -268,9 +268,9 @@ void LatticeAccount::AddFlux(LightField& light) const
   }
 }
 
-/// Net flux in a voxel due to first-collision source that LatticeVoxels::crossing moves across a face to the neighbour
-/// (Eq. (L13)): this source counts as light that travels from the mean position of collisions to the face, and from the
-/// face to the neighbour's centre.
+/// Net flux in a voxel due to the first-collision source that LatticeVoxels::crossing moves across a face to the
+/// neighbour (Eq. (L13)): this source counts as light that travels from the mean position of collisions to the face,
+/// and from the face to the neighbour's centre.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
   const std::size_t beyond = this->Box.Beyond(known, face);

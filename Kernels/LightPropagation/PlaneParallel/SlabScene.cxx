@@ -37,7 +37,8 @@ double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values,
   return sum;
 }
 
-/// Calls act(layer, mean over the layer of the beam's irradiance, perpendicular to the beam) for each layer.
+/// Calls act(layer, irradiance) for each layer. The irradiance is that of a beam, perpendicular to the beam, averaged
+/// over the layer.
 template <class Act>
 void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
 {

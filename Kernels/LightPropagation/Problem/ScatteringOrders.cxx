@@ -287,7 +287,8 @@ bool CanUseCells(const ScatteringOfScene& scene)
     AreThinEnough(scene.grid, CellHalvings(scene.grid, scene.thickest));
 }
 
-/// Time of coarse-mesh DSA at an albedo. Only scattered light is corrected, so it converges faster at lower albedo.
+/// Time of coarse-mesh DSA at an albedo. The correction concerns scattered light only: the lower the albedo, the fewer
+/// iterations are needed.
 AcceleratedTime TimeInCells(double albedo)
 {
   const double rows = albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;

@@ -87,8 +87,8 @@ private:
   Scene The;
   Buffer<float> OfSweep, Incoming; ///< see Currents(), CameInThroughFaces()
   Buffer<float> Found;             ///< see Sources()
-  /// See LampPath(), LampMoments(); OfLamps: sources by face of the light first scattered from lamps,
-  /// [channel][face][voxel].
+  /// See LampPath(), LampMoments(); OfLamps: for each face of a voxel, the source of lamps' light after its first
+  /// scattering, [channel][face][voxel].
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
   Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;

@@ -187,7 +187,7 @@ public:
   }
 
 private:
-  /// Number of point sets that are sampled: one on each face, and one on the part of the rectangle inside the volume
+  /// Number of surfaces on which photons start: the six faces, and the part of the rectangle inside the volume
   static constexpr int Parts = 7;
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const

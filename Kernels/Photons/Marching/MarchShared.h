@@ -84,7 +84,7 @@ typedef struct
   float wall[3]; ///< time since the step began at which the photon reaches the next wall along each axis
   float now;     ///< time since the step began
   float turn;    ///< time since the step began at which the step ends
-  /// Until this time since the step began, a varying refractive index in the photon's voxel does not start a new step
+  /// Time since the step began, before which a varying refractive index in the photon's voxel starts no new step
   float settled;
   float step;        ///< duration of the current step
   float start[3];    ///< position at which the step began

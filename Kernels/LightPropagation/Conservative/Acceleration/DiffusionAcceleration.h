@@ -70,8 +70,8 @@ private:
   RestOfChanges Rest;
   double Residual = 1.0;
   WarmStart Warm;
-  /// Fluence and angular moments of the first iteration; empty if no light is kept for the next solve. That solve
-  /// computes them anew, so they are subtracted from the light that is kept.
+  /// Fluence and angular moments of the first iteration; empty if no light is kept for the next solve. The next solve
+  /// computes its own first iteration; this one is therefore subtracted from the light that is kept.
   std::vector<float> First, FirstMoments;
 
   IterationResult Result;
