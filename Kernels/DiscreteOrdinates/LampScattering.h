@@ -23,9 +23,10 @@ struct LampTarget
   const OrdinatesLight& light; ///< sums over scattering orders, to which the lamp's fluence and net flux are added
 };
 
-/// First-collision source of uncollided light: proportional to the phase function between the ray and each direction,
-/// averaged over the solid angle of the direction (numerics.md, Eq. (D12)). Scattered power and its mean cosine are
-/// exact, and no source is negative, however few terms the phase function has for later scatterings.
+/// First-collision source of uncollided light. Along each direction it is proportional to the phase function for
+/// scattering from the ray into that direction, averaged over the direction's solid angle (numerics.md, Eq. (D12)).
+/// Scattered power and its mean cosine are exact, and no source is negative, however few terms the phase function has
+/// for later scatterings.
 ///
 /// Rays start at the position of the lamp; for a rectangle at its centre, which is inaccurate close to it. In the voxel
 /// that contains the lamp, first scattering is isotropic.

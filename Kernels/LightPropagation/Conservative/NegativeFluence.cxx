@@ -13,8 +13,8 @@ namespace tyndall
 namespace
 {
 /// Raising negative fluence adds absorbed power, which is then subtracted from neighbouring voxels in at most this
-/// number of passes (OwedPower::Collect()). Each pass moves the power that the direct neighbours of a voxel cannot give
-/// one voxel farther.
+/// number of passes (OwedPower::Collect()). If the direct neighbours of a voxel do not have enough power, each pass
+/// moves the remainder to voxels one step farther away.
 constexpr int MostTurns = 50;
 /// A fluence that is below its uncollided part by at most this fraction of that part is raised without subtracting
 /// power elsewhere.

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Starting positions of rays. Thick voxels have sources by octant and need two rays each, because light enters and
-/// leaves such voxels at their edges.
+/// Starting positions of rays. Thick voxels have sources by octant and need two rays each, because the transmittance of
+/// one ray in the middle of a thick voxel differs from the voxel's mean transmittance.
 RayStarts StartsOf(const PropagationSettings& settings, bool byOctant)
 {
   return settings.staggeredRays ? RayStarts::Staggered : byOctant ? RayStarts::Pairs : RayStarts::Middle;

@@ -112,8 +112,8 @@ double FaceBalance::Reflect(int iteration, const Rgb& given)
     {
       change = std::max(change, this->ReflectChannel(iteration, c, given[c]));
     }
-    // The power of a sweep varies from cell to cell with the number of rays, and LetIn() corrects this in its first
-    // argument. The power of the diffusion solution does not vary in this way; it is passed as the second argument.
+    // The power that a sweep carries through a cell varies with the number of rays, for which LetIn() corrects its
+    // first argument. The power of the diffusion solution does not vary in this way; it is the second argument.
     this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   });
   return this->TheDomain.Max(change); // maximum over ranks, whose devices may round differently
