@@ -118,6 +118,7 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   AddTexts(table, "quantity", rows, [](const Row& row) { return tyndall::NameOf(tyndall::QuantityOf(row.method)); });
   AddTexts(table, "grid", rows, SizeOf);
   AddNumbers(table, "seconds", rows, [](const Row& row) { return row.seconds; });
+  AddNumbers(table, "core_seconds", rows, [](const Row& row) { return row.coreSeconds; });
   AddNumbers(table, "peak_bytes", rows, [](const Row& row) { return row.peakBytes; });
   AddNumbers(table, "error_l2", rows, [](const Row& row) { return row.errorL2; });
   AddNumbers(table, "error_max", rows, [](const Row& row) { return row.errorMax; });

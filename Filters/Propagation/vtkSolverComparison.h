@@ -49,7 +49,8 @@ struct ComparisonSettings;
  * | `setting` |  | settings of the method, as text |
  * | `quantity` |  | `fluence`; `fluence_direct`: photons without scattered light; `radiance`: pictures |
  * | `grid` | | size in voxels, for example 64x64x64; of pictures in pixels |
- * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
+ * | `seconds` | s | least of Repeats runs, from input arrays to output arrays, without compilation of kernels |
+ * | `core_seconds` | s | least processor time of the process in these runs, all threads summed; NaN on a GPU |
  * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
  * | `error_l2` | 1 | 2-norm of the difference over voxels and channels, divided by the 2-norm of the reference |
  * | `error_max` | 1 | largest difference in a voxel, divided by the largest fluence of the reference |
@@ -246,8 +247,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of timed runs, whose median is reported, after one run that is not timed; fewer if TimeBudget does not
-  /// allow them. Default 3, valid [1, 100].
+  /// Number of timed runs, whose least time is reported, after one run that is not timed; at least 5 of settings that
+  /// take less than 50 ms; fewer if TimeBudget does not allow them. Default 3, valid [1, 100].
   tyndallRangeMacro(Repeats, int, 1, 100);
   ///@}
 

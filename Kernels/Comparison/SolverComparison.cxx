@@ -19,13 +19,6 @@ std::string SizeOf(const Grid& grid)
   return std::to_string(grid.size[0]) + "x" + std::to_string(grid.size[1]) + "x" + std::to_string(grid.size[2]);
 }
 
-double Median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 /// Copies values of one channel to three channels if `wanted` is three.
 /// @param has  channels of `values`
 std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
@@ -168,6 +161,19 @@ struct Lane
   bool Done() const { return this->next == this->runs.size(); }
 };
 
+/// Run time of a setting, seconds: the smallest of all its runs, which other load on the machine affects least.
+struct RunTime
+{
+  static constexpr double Endless = std::numeric_limits<double>::infinity();
+  double wall = Endless, core = Endless;
+  int runs = 0;
+
+  void Add(const RunTime& run)
+  {
+    *this = { std::min(this->wall, run.wall), std::min(this->core, run.core), this->runs + 1 };
+  }
+};
+
 /// Executes and times runs, and adds their rows to the comparison.
 class Runner
 {
@@ -217,72 +223,73 @@ private:
     this->Result.leftOut.push_back(std::string(NameOf(run.method)) + ", " + run.setting + ": " + why);
   }
 
-  double Timed(const ComparedRun& run, LightField& light, const Monitor& monitor)
+  RunTime Timed(const ComparedRun& run, LightField& light, const Monitor& monitor)
   {
-    const double start = this->TheDevice.Now();
+    const double start = this->TheDevice.Now(), core = CoreSeconds();
     light = run.solve(false, monitor);
-    return this->TheDevice.Now() - start;
+    return { this->TheDevice.Now() - start, CoreSeconds() - core, 1 };
   }
 
-  /// Runs a setting repeatedly and returns its run times, seconds. The time of a run that compiled kernels is left out,
-  /// unless the time limit allows no other run.
+  /// Runs a setting repeatedly, quick ones more often. The time of a run that compiled kernels is left out, unless the
+  /// time limit allows no other run.
   /// @param left  time that all repeats may take, seconds
   /// @param light  receives the light
-  std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
+  RunTime TimeOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
   {
-    constexpr double partForRepeats = 0.2;
+    constexpr double partForRepeats = 0.2, quick = 0.05; // `quick` in seconds
+    constexpr int repeatsOfQuick = 5;
     const double end = this->TheDevice.Now() + left;
     const std::size_t made = KernelsMade();
-    const double first = this->Timed(run, light, monitor);
-    std::vector<double> seconds;
+    const RunTime first = this->Timed(run, light, monitor);
+    RunTime time;
     if (made == KernelsMade())
     {
-      seconds.push_back(first);
+      time = first;
     }
     try
     {
-      if (seconds.empty() && this->TheDevice.Now() + first <= end)
+      if (time.runs == 0 && this->TheDevice.Now() + first.wall <= end)
       {
-        seconds.push_back(this->Timed(run, light, monitor));
+        time = this->Timed(run, light, monitor);
       }
-      const double fitting = seconds.empty() ? 0.0 : partForRepeats * left / seconds.back();
-      while (seconds.size() < static_cast<std::size_t>(this->Settings.repeats) &&
-        static_cast<double>(seconds.size()) + 1.0 <= fitting)
+      const int wanted = time.wall < quick ? std::max(this->Settings.repeats, repeatsOfQuick) : this->Settings.repeats;
+      while (time.runs > 0 && time.runs < wanted && (time.runs + 1.0) * time.wall <= partForRepeats * left)
       {
-        seconds.push_back(this->Timed(run, light, monitor));
+        time.Add(this->Timed(run, light, monitor));
       }
     }
     catch (const TimeIsUp&) // the time is up, but at least one run is complete
     {
     }
-    if (seconds.empty())
+    if (time.runs == 0)
     {
       this->LeaveOut(run, "its seconds are those of a run that compiled kernels; there was no time for another");
-      seconds.push_back(first);
+      time = first;
     }
-    return seconds;
+    return time;
   }
 
   /// Executes a run with its repeats, and adds its row to the comparison.
-  /// @return median of the run times, seconds
+  /// @return run time, seconds
   double Run(const ComparedRun& run, double left, const Monitor& monitor)
   {
     this->TheDevice.ResetPeak();
     const std::size_t before = this->TheDevice.BytesInUse();
     LightField light;
-    const double seconds = Median(this->TimesOf(run, left, light, monitor));
+    const RunTime time = this->TimeOf(run, left, light, monitor);
     const bool host = run.method == ComparedMethod::PublishedSequential;
     ComparisonRow row;
     row.method = run.method;
     row.setting = run.setting;
     row.filters = run.filters;
     row.grid = run.grid;
-    row.seconds = seconds;
+    row.seconds = time.wall;
+    row.coreSeconds = host || this->TheDevice.IsCpu() ? time.core : ComparisonRow::Unknown;
     row.peakBytes = host ? ComparisonRow::Unknown : static_cast<double>(this->TheDevice.PeakBytes() - before);
     this->Compare(row, run, light);
     this->Estimate(row, run, light, monitor);
     this->Result.rows.push_back(std::move(row));
-    return seconds;
+    return time.wall;
   }
 
   void Compare(ComparisonRow& row, const ComparedRun& run, const LightField& light) const

@@ -20,7 +20,9 @@ struct ComparisonRow
   std::string setting;
   std::string filters; ///< ComparedRun::filters; empty: filters cannot repeat this row
   Grid grid;
-  double seconds = Unknown;   ///< median run time, from input arrays in memory to light in memory
+  double seconds = Unknown; ///< smallest run time, from input arrays in memory to light in memory
+  /// Smallest processor time of all threads of the process during a run, seconds; unknown on devices that are not CPUs.
+  double coreSeconds = Unknown;
   double peakBytes = Unknown; ///< peak memory of buffers on the device, bytes
   /// Relative L2 error: 2-norm of the difference from the reference over voxels and channels, divided by the 2-norm of
   /// the reference.
@@ -67,7 +69,8 @@ struct ComparisonSettings
   std::vector<ComparedMethod> methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
-  /// Timed runs per setting, after a run that compiles kernels; fewer if the time budget does not allow them.
+  /// Timed runs per setting, after a run that compiles kernels; at least 5 of settings that take less than 50 ms; fewer
+  /// if the time budget does not allow them.
   int repeats = 3;
   /// Total time budget, seconds. Half of it is for the reference, unless the reference is given; the methods share the
   /// rest. A run that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence

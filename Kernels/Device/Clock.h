@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <functional>
 
 namespace tyndall
@@ -14,6 +15,12 @@ using Clock = std::function<double()>;
 inline double ClockSeconds()
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Processor time of all threads of this process, seconds. Other load on the machine hardly affects it.
+inline double CoreSeconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 /// Number of different kernels that this process's devices have created. A kernel is compiled, or read from a cache,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -36,11 +35,6 @@ double StatusBytes(const std::string& name)
 double WallSeconds()
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double CoreSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 double Median(std::vector<double> values)

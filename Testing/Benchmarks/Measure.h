@@ -1,12 +1,14 @@
 #pragma once
 
+#include "Device/Clock.h"
+
 #include <vector>
 
 /// Clocks and memory of this process, for benchmarks on a machine that others may use too.
 namespace bench
 {
 double WallSeconds(); ///< of a clock that never goes back
-double CoreSeconds(); ///< that this process's threads have run, added up: hardly longer for others being at work
+using tyndall::CoreSeconds;
 double Median(std::vector<double> values);
 double LoadAverage(); ///< of the last minute: processes that ran or wanted to; NaN where it is not known
 
