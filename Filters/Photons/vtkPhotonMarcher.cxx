@@ -335,6 +335,11 @@ void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Co
 {
   if (this->Scheme != PUBLISHED)
   {
+    const std::string warning = marcher.Warning(photons);
+    if (!warning.empty() && communicator.Rank() == 0)
+    {
+      vtkWarningMacro(<< warning);
+    }
     marched.light = marcher.March(photons, tyndall::MonitorOf(this));
   }
   if (this->PathCount > 0)

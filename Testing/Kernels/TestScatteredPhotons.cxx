@@ -7,6 +7,7 @@
 
 #include "Numerics/Constants.h"
 #include "Photons/Marching/PhotonMarcher.h"
+#include "Photons/Scattering/ScatteringForecast.h"
 #include "Reference/CubeReference.h"
 #include "Reference/ReferenceTable.h"
 #include "Reference/SlabReference.h"
@@ -105,6 +106,55 @@ TEST_F(ScatteredPhotonsTest, LeaveACubeAsTheReferencesDo)
     }
   }
   EXPECT_LE(beyond, 2); // of some hundred, where 0.3% are beyond 3 standard errors by chance
+}
+
+TEST_F(ScatteredPhotonsTest, AreScatteredAsOftenAsForecast)
+{
+  constexpr std::size_t Count = 4000; // few are scattered much more often than most
+  for (const double tau : { 20.0, 100.0 })
+  {
+    for (const double albedo : { 1.0, 0.99 })
+    {
+      for (const double g : { 0.0, 0.85 })
+      {
+        for (const bool inside : { false, true })
+        {
+          Scene scene = Cube(6, tau, albedo);
+          scene.medium.phase = PhaseFunction::HenyeyGreenstein(g);
+          auto photons = ThroughTheBottom(scene.medium.grid, Count, true, 5);
+          for (Photon& photon : photons)
+          {
+            photon.position[2] += inside ? 0.4 : 0.0;
+          }
+          const Domain domain(scene.medium.grid);
+          const double forecast = ScatteringForecast(domain, scene.medium).Scatterings(domain, photons);
+          const PhotonLight light = this->March(scene, photons, AllOrders());
+          const double ratio = forecast * Count / static_cast<double>(light.scatterings);
+          EXPECT_GT(ratio, 0.6) << tau << " " << albedo << " " << g << " " << inside;
+          EXPECT_LT(ratio, 1.3) << tau << " " << albedo << " " << g << " " << inside;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(ScatteredPhotonsTest, WarnBeforeTheyAreScatteredTooOften)
+{
+  const auto warning = [this](double tau, int orders) {
+    const Scene scene = Cube(2, tau, 1.0);
+    auto photons = ThroughTheBottom(scene.medium.grid, 10, false, 5);
+    for (Photon& photon : photons)
+    {
+      photon.position[2] += 0.5;
+    }
+    MarchSettings settings;
+    settings.maximumOrders = orders;
+    return PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, settings).Warning(photons);
+  };
+  EXPECT_NE(warning(1e4, 0).find("Uncollided Light"), std::string::npos) << warning(1e4, 0);
+  EXPECT_EQ("", warning(1e2, 0));
+  EXPECT_EQ("", warning(1e4, 1));
+  EXPECT_EQ("", warning(1e4, 100));
 }
 
 TEST_F(ScatteredPhotonsTest, HaveTheFluenceOfACubeVoxelByVoxel)

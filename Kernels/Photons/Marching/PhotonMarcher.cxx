@@ -12,6 +12,7 @@
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Scattering/PhotonScattering.h"
+#include "Photons/Scattering/ScatteringForecast.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -98,6 +99,7 @@ public:
   const MarchSettings Settings;
   RoundsTraffic Handed; ///< messages that this rank sent in the last march
   std::unique_ptr<PilotGathering> Pilots;
+  std::unique_ptr<const ScatteringForecast> Forecast; ///< null as Scattering
 
 private:
   VoxelBox KnownOf(const VoxelBox& block, int reach) const;
@@ -170,6 +172,7 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
   if (settings.maximumOrders != 1 && this->Traits.scatters)
   {
     this->PrepareScattering(medium, index, levels);
+    this->Forecast = std::make_unique<const ScatteringForecast>(domain, medium);
   }
   this->Pilots = std::make_unique<PilotGathering>(this->TheDomain, this->Through.get(), this->Traits, this->Settings);
 }
@@ -451,6 +454,12 @@ PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
 PhotonLight PhotonMarcher::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
   return this->Inside->March(share, nullptr, monitor);
+}
+
+std::string PhotonMarcher::Warning(const std::vector<Photon>& share) const
+{
+  const Implementation& inside = *this->Inside;
+  return inside.Forecast ? inside.Forecast->Warning(inside.TheDomain, share, inside.Settings.maximumOrders) : "";
 }
 
 PhotonLight PhotonMarcher::MarchByTurns(const std::vector<Photon>& photons, MarchTurns& turns, const Monitor& monitor)

@@ -9,6 +9,7 @@
 #include "Photons/Photons.h"
 
 #include <memory>
+#include <string>
 
 namespace tyndall
 {
@@ -59,6 +60,11 @@ public:
   ///   negative, its batch (if batches are requested) not 0 to 63, or photons are counted and exceed the maximum of a
   ///   voxel's counter; DeviceError if the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
+
+  /// Warning that a march of these photons takes very many scatterings (ScatteringForecast.h); empty if it does not, or
+  /// photons are not followed beyond their first collision.
+  /// @param share  this rank's photons, as in March
+  std::string Warning(const std::vector<Photon>& share) const;
 
   /// Marches photons in turns, with callbacks in between. Each turn is a launch over a limited number of path segments.
   /// The light is the same as from March. For one rank and one scattering order, without batches.
