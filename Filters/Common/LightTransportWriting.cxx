@@ -221,8 +221,8 @@ void RemoveLight(vtkImageData* output)
     output->GetCellData()->RemoveArray(array);
   }
   for (const char* fact : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         "settings_used", IgnoredFact, SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact,
-         FaceRadianceFact, LitColorDistanceFact, LitColorExposureFact })
+         "settings_used", IgnoredFact, SurfaceRadianceFact, SurfaceErrorFact, ErrorLengthFact, LampsApartFact,
+         FacePowerFact, FaceAlbedoFact, FaceRadianceFact, LitColorDistanceFact, LitColorExposureFact })
   {
     output->GetFieldData()->RemoveArray(fact);
   }
@@ -250,6 +250,15 @@ void WriteFacts(const LightField& light, vtkImageData* output)
   {
     AddFact(output, SurfaceRadianceFact, { light.surfaceRadiance.begin(), light.surfaceRadiance.end() },
       static_cast<int>(SurfaceCosines.size()) * channels);
+  }
+  if (!light.surfaceError.empty())
+  {
+    AddFact(output, SurfaceErrorFact, { light.surfaceError.begin(), light.surfaceError.end() },
+      static_cast<int>(SurfaceCosines.size()) * channels);
+  }
+  if (light.errorLength > 0.0 && !light.fluenceError.empty())
+  {
+    AddFact(output, ErrorLengthFact, std::vector<double>{ light.errorLength }, 1);
   }
   if (!light.facePower.empty())
   {

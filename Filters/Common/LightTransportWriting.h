@@ -52,8 +52,12 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 /// one tuple for each face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the
 /// lower axis fastest.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
-/// Name of field data with one text for each array of the medium that the solver ignores. The text names the array, and
-/// filters that use it.
+/// Names of field data: estimated standard error of `surface_radiance` (LightField::surfaceError), and length over
+/// which errors of `fluence` have the same sign (LightField::errorLength).
+constexpr const char* SurfaceErrorFact = "surface_radiance_error";
+constexpr const char* ErrorLengthFact = "error_length";
+/// Name of field data with one text for each array of the medium that the solver ignores: the array, and filters that
+/// use it.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
 /// face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the lower axis fastest.

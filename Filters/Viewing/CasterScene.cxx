@@ -72,6 +72,8 @@ SolvedLight ViewedInputs::Light() const
   light.straightOn = this->moments.straightOn;
   light.lampsApart = this->moments.lampsApart;
   light.fluenceError = this->fluenceError;
+  light.surfaceError = this->surfaceError.Seen();
+  light.errorLength = this->errorLength;
   return light;
 }
 
@@ -95,7 +97,14 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
     inputs.fluenceError =
       filter->GetEstimateError() ? ReadCells(image, FluenceErrorArray, Need::Optional) : FloatField();
     const std::size_t cells = BoxFaceCellCount(whole);
-    inputs.surface = ReadFaces(image, SurfaceRadianceFact, cells, static_cast<int>(SurfaceCosines.size()));
+    const auto perCell = static_cast<int>(SurfaceCosines.size());
+    inputs.surface = ReadFaces(image, SurfaceRadianceFact, cells, perCell);
+    if (filter->GetEstimateError())
+    {
+      inputs.surfaceError = ReadFaces(image, SurfaceErrorFact, cells, perCell);
+      const FaceValues length = ReadFaces(image, ErrorLengthFact, 1, 1);
+      inputs.errorLength = length.values.empty() ? 0.0 : length.values[0];
+    }
     inputs.power = ReadFaces(image, FacePowerFact, cells, 1);
     inputs.albedo = ReadFaces(image, FaceAlbedoFact, 6, 1);
     inputs.entering = ReadFaces(image, FaceRadianceFact, 6, 1);
@@ -118,7 +127,8 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
     add(image->GetCellData()->GetArray(name));
   }
   vtkNew<vtkImageData> facts;
-  for (const char* name : { SurfaceRadianceFact, FacePowerFact, FaceAlbedoFact, FaceRadianceFact, LampsApartFact })
+  for (const char* name : { SurfaceRadianceFact, SurfaceErrorFact, ErrorLengthFact, FacePowerFact, FaceAlbedoFact,
+         FaceRadianceFact, LampsApartFact })
   {
     if (vtkDataArray* const fact = image->GetFieldData()->GetArray(name))
     {
@@ -135,7 +145,7 @@ namespace
 /// @param size  number of voxels of the block's arrays along x, y and z
 void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs)
 {
-  for (FaceValues* const faces : { &inputs.surface, &inputs.power })
+  for (FaceValues* const faces : { &inputs.surface, &inputs.surfaceError, &inputs.power })
   {
     if (!faces->values.empty())
     {

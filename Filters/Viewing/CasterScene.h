@@ -49,8 +49,9 @@ struct ViewedInputs
   FloatField fluence, direct, ior, meanDirection;
   FloatField fluenceError; ///< read only with EstimateError
   MomentsInput moments;
-  /// Outgoing radiance, power, albedo and incident radiance at the box's faces.
-  FaceValues surface, power, albedo, entering;
+  double errorLength = 0.0; ///< length over which errors of `fluence` have the same sign; 0: not known
+  /// Outgoing radiance and its error, power, albedo and incident radiance at the box's faces.
+  FaceValues surface, surfaceError, power, albedo, entering;
 
   SolvedLight Light() const;
 };

@@ -201,8 +201,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   {
     key.Add(tyndall::ChosenArray(this, number, image, tyndall::ViewedNames[number]));
   }
-  for (const char* fact :
-    { tyndall::SurfaceRadianceFact, tyndall::FacePowerFact, tyndall::FaceAlbedoFact, tyndall::FaceRadianceFact })
+  for (const char* fact : { tyndall::SurfaceRadianceFact, tyndall::SurfaceErrorFact, tyndall::ErrorLengthFact,
+         tyndall::FacePowerFact, tyndall::FaceAlbedoFact, tyndall::FaceRadianceFact })
   {
     key.Add(image->GetFieldData()->GetArray(fact));
   }
@@ -376,11 +376,13 @@ void vtkMediumRayCaster::Estimate(const tyndall::Domain& domain, const tyndall::
   const tyndall::PictureErrorCasters* const error = shot.scene ? shot.scene->error.get() : nullptr;
   const std::vector<tyndall::VoxelBox> held =
     shot.scene ? shot.scene->held : std::vector<tyndall::VoxelBox>(domain.Partition().blocks.size());
-  const auto render = [&](bool ofLight, const tyndall::Camera& seenBy, const std::array<int, 2>& size) {
-    tyndall::MediumRayCaster* const own = error ? (ofLight ? error->ofLight : error->coarse).get() : nullptr;
-    return tyndall::PictureInBlocks(domain, held, own).Take(seenBy, size, { { 0, 0 }, size }, tyndall::MonitorOf(this));
+  const auto render = [&](auto which, const tyndall::Camera& seenBy, const std::array<int, 2>& size) {
+    tyndall::MediumRayCaster* const own = error ? (error->*which).get() : nullptr;
+    return domain.Any(own != nullptr)
+      ? tyndall::PictureInBlocks(domain, held, own).Take(seenBy, size, { { 0, 0 }, size }, tyndall::MonitorOf(this))
+      : tyndall::Picture();
   };
-  tyndall::EstimatePictureError(shot.picture, camera, domain.Any(error && error->ofLight), render);
+  tyndall::EstimatePictureError(shot.picture, camera, render);
   if (error && !error->lightLeftOut.empty())
   {
     shot.leftOut.push_back(error->lightLeftOut);

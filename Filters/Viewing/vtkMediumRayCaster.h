@@ -171,10 +171,10 @@ public:
   ///@}
 
   ///@{
-  /// Whether to estimate the error of radiance, as the array `picture_error`, from two more pictures of every second
-  /// pixel: one with half as many samples, and one of `fluence_error`, the error of the light. Without the array
-  /// `fluence_error`, `left_out` says that the light's part is missing. The error of interpolation between voxel
-  /// centres is not included. Default off.
+  /// Whether to estimate the error of radiance, as the array `picture_error`, from further pictures of every second
+  /// pixel: one with half as many samples, and others of the error of the light (`fluence_error`, `error_length`,
+  /// `surface_radiance_error`). Without `fluence_error`, `left_out` says that the light's part is missing. The error of
+  /// interpolation between voxel centres is not included. Default off.
   tyndallFlagMacro(EstimateError);
   ///@}
 

@@ -48,6 +48,8 @@ public:
   /// Map (Coarsening) between this rank's fine voxels and the coarse voxels that contain them (Parent). One layer of
   /// coarse voxels around these is included, since refinement interpolates between coarse voxels.
   const Coarsening& Seen() const { return this->SeenPart; }
+  /// Box of the coarse voxels of Seen(); it contains this rank's coarse voxels and, within the grid, their neighbours.
+  const VoxelBox& SeenBox() const { return this->SeenBoxes[this->TheCommunicator.Rank()]; }
   /// Values of the coarse voxels of Seen(), gathered from the ranks that own them. Collective.
   /// @param values  values of this rank's coarse voxels, `components` per voxel
   std::vector<float> SeenOf(const std::vector<float>& values, int components) const;

@@ -61,8 +61,9 @@ void ChangePowers(LightField& light, const Change& change, double scale)
 template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {
-  for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.fluenceError,
-         &light.scatteredRadiance, &light.surfaceRadiance, &light.scatteredMoments, &light.facePower })
+  for (std::vector<float>* values :
+    { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance, &light.surfaceRadiance,
+      &light.surfaceError, &light.scatteredMoments, &light.facePower })
   {
     act(*values, std::size_t{ 1 });
   }

@@ -95,6 +95,7 @@ struct LightField : SolveReport
   /// requested.
   std::vector<float> firstMoments;
   std::vector<float> fluenceError; ///< estimated standard error of the fluence, W / length^2, `channels` per voxel
+  double errorLength = 0.0;        ///< mean length over which errors of the fluence have the same sign; 0: not known
   /// Net flux, W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2.
   std::vector<float> netFlux;
   /// In-scattered radiance, W / (length^2 sr), channels * storedDirections per voxel.
@@ -114,6 +115,7 @@ struct LightField : SolveReport
   /// SurfaceCosines (BoxFaces.h); empty if no boundary voxel is optically thick, or if the solver did not compute this
   /// radiance.
   std::vector<float> surfaceRadiance;
+  std::vector<float> surfaceError; ///< estimated standard error of surfaceRadiance, same layout; empty: not known
   EnergyBalance balance;
   /// Net power that escapes through faces -x, +x, -y, +y, -z, +z, W: the power that leaves, minus the power that the
   /// faces reflect.

@@ -4,6 +4,7 @@
 #include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -72,6 +73,60 @@ std::vector<float> MomentsOfError(const SolvedLight& light, std::size_t voxels)
   return scaled;
 }
 
+/// Values of a field, each transformed.
+/// @param tuples  number of voxels, or of cells of the box's faces
+template <class Transform>
+std::vector<float> Transformed(const Field& field, std::size_t tuples, const Transform& transform)
+{
+  std::vector<float> values(field.values, field.values + (field.values ? tuples * field.components : 0));
+  std::transform(values.begin(), values.end(), values.begin(), transform);
+  return values;
+}
+
+/// Isotropic light that is the error of `light`, in units of its largest error, and a medium that emits the variance of
+/// this light for errors that have the same sign over light.errorLength (numerics.md, Eq. (112h)).
+class ErrorAndVariance
+{
+public:
+  /// @param largest  largest fluenceError of the whole domain, W / length^2
+  ErrorAndVariance(const Medium& given, const SolvedLight& light, double largest)
+    : emitting(given)
+  {
+    const std::size_t voxels = given.grid.VoxelCount(), cells = BoxFaceCellCount(given.grid);
+    const auto relative = [=](float error) { return static_cast<float>(error / largest); };
+    const auto squared = [=](float error) { return static_cast<float>(std::pow(error / largest, 2.0)); };
+    this->Errors = Transformed(light.fluenceError, voxels, relative);
+    this->Surface = Transformed(light.surfaceError, cells, relative);
+    this->Squares = Transformed(light.surfaceError, cells, squared);
+    this->error.fluence = { this->Errors.data(), light.fluenceError.components };
+    this->error.surface = { this->Surface.empty() ? nullptr : this->Surface.data(), light.surfaceError.components };
+    this->variance = this->error; // its fluence is not scattered, but the ray caster shows no surface without fluence
+    this->variance.surface.values = this->Squares.empty() ? nullptr : this->Squares.data();
+    const int channels =
+      std::max({ given.sigma_a.components, given.sigma_s.components, light.fluenceError.components });
+    for (std::size_t i = 0; i < voxels * channels; ++i)
+    {
+      const std::size_t voxel = i / channels;
+      const int c = static_cast<int>(i % channels);
+      const double scatters = given.sigma_s.At(voxel, c), sigma = scatters + given.sigma_a.At(voxel, c);
+      const double source = scatters * this->error.fluence.At(voxel, c) / (4.0 * Pi);
+      const double length = sigma > 0.0 ? 2.0 / sigma * std::tanh(0.5 * sigma * light.errorLength) : light.errorLength;
+      this->Extinction.push_back(static_cast<float>(2.0 * sigma));
+      this->Source.push_back(static_cast<float>(source * source * length));
+    }
+    this->emitting.sigma_s = {};
+    this->emitting.sigma_a = { this->Extinction.data(), channels };
+    this->emitting.emission = { this->Source.data(), channels };
+  }
+  ErrorAndVariance(const ErrorAndVariance&) = delete;
+
+  SolvedLight error, variance;
+  Medium emitting;
+
+private:
+  std::vector<float> Errors, Surface, Squares, Extinction, Source;
+};
+
 /// A camera for a picture of CoarserSettings whose rays are those of every second pixel in a picture of `size` pixels.
 Camera OfEverySecondPixel(Camera camera, const std::array<int, 2>& size)
 {
@@ -132,7 +187,7 @@ PictureErrorCasters::PictureErrorCasters(Device& device, const Medium& medium, c
   other.fluence = light.fluenceError;
   other.fluenceDirect = {};
   other.meanDirection = settings.shadowRays && !illumination.lights.empty() ? Field() : light.meanDirection;
-  other.surface = {};
+  other.surface = light.surfaceError;
   other.lampsApart.clear();
   if (byMoments)
   {
@@ -142,30 +197,36 @@ PictureErrorCasters::PictureErrorCasters(Device& device, const Medium& medium, c
   coarser.shadowRays = false;
   coarser.showBackground = false;
   this->ofLight = std::make_unique<MediumRayCaster>(device, dark, other, unlit, coarser, ior, block);
+  const double largest = (block ? block->shared : SharedSceneOf(medium, light, ior, settings)).largestError;
+  if (light.errorLength > 0.0 && largest > 0.0)
+  {
+    const ErrorAndVariance of(medium, light, largest);
+    this->even = std::make_unique<MediumRayCaster>(device, dark, of.error, unlit, coarser, ior, block);
+    this->variance = std::make_unique<MediumRayCaster>(device, of.emitting, of.variance, unlit, coarser, ior, block);
+  }
 }
 
 bool PictureErrorCasters::Adopt(const ViewSettings& settings)
 {
   ViewSettings coarser = CoarserSettings(settings);
   bool adopted = this->coarse->Adopt(coarser);
-  if (this->ofLight)
+  coarser.shadowRays = false;
+  coarser.showBackground = false;
+  for (MediumRayCaster* caster : { this->ofLight.get(), this->even.get(), this->variance.get() })
   {
-    coarser.shadowRays = false;
-    coarser.showBackground = false;
-    adopted = this->ofLight->Adopt(coarser) && adopted;
+    adopted = (!caster || caster->Adopt(coarser)) && adopted;
   }
   return adopted;
 }
 
 void PictureErrorCasters::Estimate(Picture& picture, const Camera& camera, const Monitor& monitor) const
 {
-  EstimatePictureError(
-    picture, camera, this->ofLight != nullptr, [&](bool light, const Camera& seenBy, const std::array<int, 2>&) {
-      return (light ? this->ofLight : this->coarse)->Render(seenBy, monitor);
-    });
+  EstimatePictureError(picture, camera, [&](auto which, const Camera& seenBy, const std::array<int, 2>&) {
+    return this->*which ? (this->*which)->Render(seenBy, monitor) : Picture();
+  });
 }
 
-void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLight, const RenderForError& render)
+void EstimatePictureError(Picture& picture, const Camera& camera, const RenderForError& render)
 {
   const std::array<int, 2> size = { picture.width, picture.height };
   Grid pixels, blocks;
@@ -174,15 +235,20 @@ void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLigh
   blocks.spacing = { 1.0 * size[0] / blocks.size[0], 1.0 * size[1] / blocks.size[1], 1.0 };
   const Camera second = OfEverySecondPixel(camera, size);
   const std::array<int, 2> half = { blocks.size[0], blocks.size[1] };
-  const Picture coarse = render(false, second, half);
-  const Picture ofLight = knowsLight ? render(true, second, half) : Picture();
+  const Picture coarse = render(&PictureErrorCasters::coarse, second, half);
+  const Picture ofLight = render(&PictureErrorCasters::ofLight, second, half);
+  const Picture even = render(&PictureErrorCasters::even, second, half);
+  const Picture variance = render(&PictureErrorCasters::variance, second, half);
   std::vector<float> error(coarse.radiance.size());
   for (std::size_t i = 0; i < error.size(); ++i)
   {
     const std::size_t block = i / 3, column = block % half[0], row = block / half[0];
     const double fine = picture.radiance[3 * (2 * row * size[0] + 2 * column) + i % 3];
     const double ofRays = PartOfDifference * (fine - coarse.radiance[i]);
-    error[i] = static_cast<float>(std::hypot(ofRays, knowsLight ? ofLight.radiance[i] : 0.0));
+    const double light = ofLight.radiance.empty() ? 0.0 : ofLight.radiance[i];
+    const double square = variance.radiance.empty() ? 0.0 : std::pow(even.radiance[i], 2.0);
+    const double left = square > 0.0 ? std::sqrt(std::clamp(variance.radiance[i] / square, 0.0, 1.0)) : 1.0;
+    error[i] = static_cast<float>(std::hypot(ofRays, left * light));
   }
   // The error is smoothed over neighbouring blocks of pixels, and is proportional to the radiance within a block, like
   // the error of fluence.

@@ -170,6 +170,8 @@ private:
       BoxFaceCellCount(this->Scene.medium.grid));
     seen.scatteredMoments = field(light.scatteredMoments, voxels);
     seen.straightOn = field(light.straightOn, voxels);
+    seen.surfaceError = field(light.surfaceError, BoxFaceCellCount(this->Scene.medium.grid));
+    seen.errorLength = light.errorLength;
     seen.lampsApart = light.lampsApart;
     seen.faceRadiance = this->Scene.light.faces;
     return seen;

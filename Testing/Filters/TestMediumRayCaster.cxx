@@ -330,9 +330,15 @@ void ThickVoxelsShineAtTheirSurface(test::Claims& claims)
   vtkNew<vtkLightPropagationMaps> solver;
   solver->SetInputData(image);
   solver->SetSkyColor(1.0, 1.0, 1.0);
+  solver->EstimateErrorOn();
   solver->Update();
   vtkImageData* const lit = vtkImageData::SafeDownCast(solver->GetOutputDataObject(0));
   vtkDataArray* const surface = lit->GetFieldData()->GetArray("surface_radiance");
+  vtkDataArray* const error = lit->GetFieldData()->GetArray("surface_radiance_error");
+  vtkDataArray* const length = lit->GetFieldData()->GetArray("error_length");
+  claims.That(surface && error && error->GetNumberOfTuples() == surface->GetNumberOfTuples() && length &&
+      length->GetComponent(0, 0) > 0.0,
+    "the solver tells the error of what leaves, and its errors' length");
   claims.That(surface && surface->GetNumberOfTuples() == 2 * (10 * 8 + 8 * 12 + 12 * 10),
     "the solver says what leaves every face at the box's");
   const auto seen = [&](vtkImageData* medium, const char* fluence) {
@@ -469,6 +475,14 @@ void ErrorIsEstimatedOnRequest(test::Claims& claims)
   caster->Update();
   claims.That(caster->GetSceneKept(), "the scene of the estimate is kept, too");
   claims.Near(caster->GetEstimatedError(), estimated, 0.1 * estimated, "the same error in another size");
+
+  vtkNew<vtkDoubleArray> length;
+  length->SetName("error_length");
+  length->InsertNextValue(0.1);
+  image->GetFieldData()->AddArray(length);
+  image->Modified();
+  caster->Update();
+  claims.That(caster->GetEstimatedError() < 0.5 * estimated, "errors of short length cancel along rays");
 
   caster->SetStepSize(10.0);
   test::Errors errors(caster);

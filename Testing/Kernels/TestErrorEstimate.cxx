@@ -7,6 +7,7 @@
 #include "LatticeBoltzmann/DiffusionError.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "Medium/BoxFaces.h"
 #include "Medium/Coarsening.h"
 
 #include <algorithm>
@@ -248,6 +249,67 @@ TEST_F(ErrorEstimate, OfEachColourIsThatOfItsLightAlone)
     ASSERT_NEAR(three.fluenceError[3 * i], one.fluenceError[i], 1e-4 * one.fluence[i]);
     ASSERT_EQ(three.fluenceError[3 * i + 1], 0.0f);
     ASSERT_NEAR(three.fluenceError[3 * i + 2], 2.0f * one.fluenceError[i], 2e-4 * one.fluence[i]);
+  }
+}
+
+TEST_F(ErrorEstimate, HasTheLengthOverWhichItsSignIsTheSame)
+{
+  const Domain domain(Grid{ { 16, 16, 16 }, { 1.0, 2.0, 4.0 } });
+  const CoarseBlocks blocks(domain.Comm(), domain.Partition());
+  // Errors of one sign in `run` coarse voxels of an edge of 2, 4 and 8, and then of the other.
+  const auto length = [&](int run) {
+    LightField light;
+    ForGridVoxels({ 16, 16, 16 }, [&](std::size_t, int x, int y, int z) {
+      light.fluence.push_back((x / 2 / run + y / 2 / run + z / 2 / run) % 2 == 0 ? 1.0f : -1.0f);
+    });
+    const std::vector<float> coarse(8 * 8 * 8, 0.0f);
+    WriteErrorEstimate(light, blocks, coarse, coarse, 1.0, 2.0);
+    return light.errorLength;
+  };
+  EXPECT_NEAR(length(1), 4.0, 1e-9);
+  EXPECT_NEAR(length(2), 4.0 * (8.0 / 7.0) / (6.0 / 7.0), 1e-9); // r = (4 - 3) / 7
+  EXPECT_GT(length(8), 100.0);
+}
+
+TEST_F(ErrorEstimate, OfRadianceThatLeavesThickVoxelsIsHonest)
+{
+  for (const bool sun : { true, false })
+  {
+    Scene scene({ 16, 16, 16 }, 0.04f, 3.96f);
+    scene.light.faces[2] = { 1.0, 1.0, 1.0 };
+    if (sun)
+    {
+      scene.light = {};
+      scene.light.lights = { PointLamp({ 5.0, -30.0, 9.0 }) };
+    }
+    const LightField light = Estimate(this->GetDevice(), scene);
+    ASSERT_EQ(light.surfaceError.size(), light.surfaceRadiance.size());
+    Scene fine = Finer(Finer(scene));
+    for (std::vector<float>* sigma : { &fine.sigma_a, &fine.sigma_s })
+    {
+      sigma->assign(fine.medium.grid.VoxelCount(), sigma->front());
+    }
+    fine.settings.tolerance = 1e-5;
+    const std::vector<float> exact = fine.Solve(this->GetDevice()).surfaceRadiance;
+    std::vector<double> means(light.surfaceRadiance.size());
+    ForBoxFaceCells(fine.medium.grid, [&](const BoxFaceCell& cell) {
+      const std::size_t parent = 256 * cell.face + 16 * (cell.v / 4) + cell.u / 4;
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        means[4 * parent + k] += exact[4 * cell.number + k] / 16.0;
+      }
+    });
+    double errors = 0.0, estimates = 0.0, within = 0.0;
+    for (std::size_t i = 0; i < means.size(); ++i)
+    {
+      const double error = light.surfaceRadiance[i] - means[i], estimate = light.surfaceError[i];
+      errors += error * error;
+      estimates += estimate * estimate;
+      within += std::abs(error) <= 2.0 * estimate ? 1.0 : 0.0;
+    }
+    EXPECT_GT(std::sqrt(estimates / errors), 0.5) << sun;
+    EXPECT_LT(std::sqrt(estimates / errors), 2.0) << sun;
+    EXPECT_GT(within / static_cast<double>(means.size()), 0.9) << sun;
   }
 }
 

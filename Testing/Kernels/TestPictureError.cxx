@@ -17,6 +17,8 @@ protected:
     Device& device = this->GetDevice();
     SolvedLight light = scene.LightSeen();
     light.fluenceError = Scene::See(fluenceError, 1);
+    light.surfaceError = Scene::See(this->SurfaceError, 4);
+    light.errorLength = this->ErrorLength;
     const PictureErrorCasters others(
       device, scene.MediumSeen(), light, scene.illumination, scene.settings, Scene::See(scene.ior, 1));
     Picture picture = scene.Seen(device, camera);
@@ -27,6 +29,9 @@ protected:
     }
     return picture;
   }
+
+  double ErrorLength = 0.0;        ///< SolvedLight::errorLength of the next pictures
+  std::vector<float> SurfaceError; ///< SolvedLight::surfaceError of the next pictures
 };
 
 /// Radiance that a slab of voxels of extinction `sigma` sends back, in closed form: its emission, from the front to the
@@ -121,6 +126,51 @@ TEST_F(PictureErrorTest, LightThatIsOffByATenthMakesAPictureOffByNoMore)
   EXPECT_LT(without.relativeError, 0.005);
   EXPECT_GT(with.relativeError, 0.02);
   EXPECT_LT(with.relativeError, 0.101);
+}
+
+TEST_F(PictureErrorTest, ErrorsOfShortLengthCancelAlongARay)
+{
+  Scene scene(GridOf(8, 8, 36));
+  Camera camera = FromAbove(scene.grid, 5.0);
+  camera.parallelScale = 2.0;
+  scene.sigma_a = scene.Everywhere(0.0);
+  for (const double power : { 1.0, 1e-25, 1e25 })
+  {
+    scene.fluence = scene.Everywhere(power);
+    const std::vector<float> error = scene.Everywhere(0.1 * power);
+    const auto relative = [&](double sigma, double length) {
+      scene.sigma_s = scene.Everywhere(sigma);
+      this->ErrorLength = length;
+      return this->SeenWithError(scene, camera, error).relativeError;
+    };
+    // 36 voxels of independent errors over 4 voxels each
+    EXPECT_NEAR(relative(1e-3, 4.0), 0.1 / 3.0, 0.001) << power;
+    EXPECT_NEAR(relative(1e-3, 1e3), 0.1, 0.001) << power;
+    EXPECT_NEAR(relative(1e-3, 0.0), 0.1, 0.001) << power;
+    // an eye sees errors of one sign where it sees less than their length
+    EXPECT_NEAR(relative(2.0, 20.0), 0.1, 0.005) << power;
+  }
+}
+
+TEST_F(PictureErrorTest, ThickVoxelsShowTheErrorOfTheirSurface)
+{
+  Scene scene(GridOf(8, 8, 8));
+  Camera camera = FromAbove(scene.grid, 5.0);
+  camera.parallelScale = 2.0;
+  scene.sigma_a = scene.Everywhere(0.5);
+  scene.sigma_s = scene.Everywhere(2.5);
+  scene.fluence = scene.Everywhere(4.0 * Pi);
+  scene.surface.assign(4 * BoxFaceCellCount(scene.grid), 1.0f);
+  const std::vector<float> error = scene.Everywhere(0.05 * 4.0 * Pi);
+  scene.settings.stepSize = 0.1;
+  for (const double length : { 0.0, 2.0 })
+  {
+    this->ErrorLength = length;
+    this->SurfaceError.assign(scene.surface.size(), 0.2f);
+    EXPECT_NEAR(this->SeenWithError(scene, camera, error).relativeError, 0.2, 0.01) << length;
+    this->SurfaceError.clear();
+    EXPECT_LT(this->SeenWithError(scene, camera, error).relativeError, 0.06) << length;
+  }
 }
 
 TEST_F(PictureErrorTest, LightByMomentsHasTheErrorOfItsFluence)

@@ -11,6 +11,7 @@
 #include "Reference/CubeReference.h"
 #include "Reference/ReferenceTable.h"
 #include "Reference/SlabReference.h"
+#include "Viewing/PictureError.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,38 @@ TEST_F(ScatteredPhotonsTest, WarnBeforeTheyAreScatteredTooOften)
   EXPECT_EQ("", warning(1e2, 0));
   EXPECT_EQ("", warning(1e4, 1));
   EXPECT_EQ("", warning(1e4, 100));
+}
+
+TEST_F(ScatteredPhotonsTest, MakePicturesAsNoisyAsEstimated)
+{
+  for (const double tau : { 2.0, 12.0 })
+  {
+    Scene scene = Cube(16, tau, 0.9);
+    Device& device = this->GetDevice();
+    ViewSettings settings;
+    settings.imageSize = { 60, 60 };
+    settings.showBackground = false;
+    const Camera camera = FrameGrid(scene.medium.grid, 1.0, 30.0, { 1.0, 0.5, 0.7 });
+    std::vector<std::vector<float>> pictures;
+    double estimate = 0.0;
+    for (const std::size_t photons : { 10000u, 1000000u })
+    {
+      MarchSettings march = AllOrders();
+      march.errorBatches = 16;
+      const LightField found = this->March(scene, ThroughTheBottom(scene.medium.grid, photons, true, 3), march).light;
+      SolvedLight light;
+      light.fluence = { found.fluence.data(), 1 };
+      light.fluenceError = { found.fluenceError.data(), 1 };
+      light.errorLength = found.errorLength;
+      Picture picture = MediumRayCaster(device, scene.medium, light, {}, settings).Render(camera);
+      PictureErrorCasters(device, scene.medium, light, {}, settings).Estimate(picture, camera);
+      estimate = pictures.empty() ? picture.relativeError : estimate;
+      pictures.push_back(picture.radiance);
+    }
+    const double error = RelativeRmse(pictures[0], pictures[1]);
+    EXPECT_GT(estimate / error, 0.6) << tau;
+    EXPECT_LT(estimate / error, 1.7) << tau;
+  }
 }
 
 TEST_F(ScatteredPhotonsTest, HaveTheFluenceOfACubeVoxelByVoxel)

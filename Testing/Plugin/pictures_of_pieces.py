@@ -254,6 +254,7 @@ def estimate():
     image = piece()
     z, y, x = cells_of(image.GetExtent())
     add(image, "fluence_error", 0.05 + 0.03 * numpy.cos(x + z))
+    add_fact(image, "error_length", numpy.array([3.0]), 1)
     keep("estimate", cast(image, EstimateError=1))
 
 

@@ -1,8 +1,10 @@
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 
 #include "Device/Errors.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -10,7 +12,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double FinePart = 0.8; ///< fraction of the progress that is attributed to the solve on the fine grid
+constexpr double MostCorrelated = 0.99; ///< largest correlation of errors in neighbouring voxels that is distinguished
+constexpr double FinePart = 0.8;        ///< fraction of the progress that is attributed to the solve on the fine grid
 
 /// Number of directions per cube face of the second coarse solve, whose difference from the first coarse solve gives
 /// the angular error. It is smaller than `directionsPerFace`, unless that is 1. If directions form an even number of
@@ -109,10 +112,17 @@ struct ErrorOfAverages
   /// directions
   double inSpace, partOfDifference;
 
-  double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
-  double InDirections(float same, float other) const
+  double InSpace(double fine, double same) const { return this->inSpace * (fine - same); }
+  double InDirections(double same, double other) const { return this->partOfDifference * (same - other); }
+  std::vector<double> Signed(
+    const std::vector<float>& fine, const std::vector<float>& same, const std::vector<float>& other) const
   {
-    return this->partOfDifference * (static_cast<double>(same) - other);
+    std::vector<double> errors(fine.size());
+    for (std::size_t i = 0; i < fine.size(); ++i)
+    {
+      errors[i] = this->InSpace(fine[i], same[i]) + this->InDirections(same[i], other[i]);
+    }
+    return errors;
   }
   std::vector<double> Variance(
     const std::vector<float>& fine, const std::vector<float>& same, const std::vector<float>& other) const
@@ -164,6 +174,102 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 
+/// Mean length over which errors have the same sign: the geometric mean, over the axes, of h (1 + r) / (1 - r) for the
+/// correlation r of errors in neighbouring coarse voxels of edge h (numerics.md, Eq. (84b)). 0 without errors.
+/// Collective.
+/// @param errors  signed errors in the coarse voxels of blocks.Seen(), by channel
+double CorrelationLength(const CoarseBlocks& blocks, const std::vector<double>& errors, int channels)
+{
+  const VoxelBox& own = blocks.Coarse().blocks[blocks.Comm().Rank()];
+  const Grid& whole = blocks.Coarse().whole;
+  const Grid seen = blocks.Seen().Coarse();
+  const std::array<std::size_t, 3> strides = seen.Strides();
+  std::vector<double> sums(6, 0.0); // by axis: products with the next voxel, and mean squares of both
+  for (std::size_t i = 0; i < own.VoxelCount(); ++i)
+  {
+    const std::array<int, 3> at = own.VoxelAt(i);
+    const std::size_t place = seen.IndexOf(blocks.SeenBox().Within(at));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (int c = 0; c < channels && at[axis] + 1 < whole.size[axis]; ++c)
+      {
+        const double here = errors[place * channels + c], next = errors[(place + strides[axis]) * channels + c];
+        sums[axis] += here * next;
+        sums[3 + axis] += 0.5 * (here * here + next * next);
+      }
+    }
+  }
+  sums = blocks.Comm().Sum(sums);
+  double logarithms = 0.0;
+  int axes = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (sums[3 + axis] > 0.0)
+    {
+      const double r = std::clamp(sums[axis] / sums[3 + axis], 0.0, MostCorrelated);
+      logarithms += std::log(whole.spacing[axis] * (1.0 + r) / (1.0 - r));
+      ++axes;
+    }
+  }
+  return axes > 0 ? std::exp(logarithms / axes) : 0.0;
+}
+
+/// Smooths values in the cells of the box's faces within each face.
+/// @param values  [cell][component] (BoxFaces.h)
+void SmoothInFaces(std::vector<double>& values, const Grid& grid)
+{
+  const std::size_t width = values.size() / BoxFaceCellCount(grid);
+  std::vector<double> smooth;
+  for (int face = 0; face < 6; ++face)
+  {
+    const PlaneAxes axes = AcrossAxis(face / 2);
+    const auto across = static_cast<std::size_t>(grid.size[axes.u]);
+    const auto along = static_cast<std::size_t>(grid.size[axes.v]);
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(smooth.size());
+    std::vector<double> ofFace(first, first + static_cast<std::ptrdiff_t>(across * along * width));
+    SmoothAlong(ofFace, across, width);
+    SmoothAlong(ofFace, along, across * width);
+    smooth.insert(smooth.end(), ofFace.begin(), ofFace.end());
+  }
+  values = std::move(smooth);
+}
+
+/// Sets surfaceError, an error of first order in the voxel size, to the difference from the surface radiance of a
+/// coarse grid. The squared errors of coarse cells are smoothed over neighbouring cells; the error of a cell is
+/// proportional to its radiance. surfaceError stays empty if either grid has no surface radiance.
+/// @param between  map between the whole grids
+void WriteSurfaceError(LightField& light, const LightField& coarse, const Coarsening& between)
+{
+  const std::size_t cells = BoxFaceCellCount(between.Fine()), coarseCells = BoxFaceCellCount(between.Coarse());
+  const std::size_t width = light.surfaceRadiance.size() / cells;
+  if (width == 0 || coarse.surfaceRadiance.size() != coarseCells * width)
+  {
+    return;
+  }
+  std::vector<std::size_t> parents(cells);
+  std::vector<double> means(coarseCells * width), counts(coarseCells), squares(coarseCells * width);
+  ForBoxFaceCells(between.Fine(), [&](const BoxFaceCell& cell) {
+    const std::array<int, 3> voxel = between.Coarse().VoxelAt(between.Parent(cell.voxel));
+    parents[cell.number] = LayoutOfFace(between.Coarse(), cell.face).CellAt(voxel);
+    counts[parents[cell.number]] += 1.0;
+  });
+  for (std::size_t i = 0; i < light.surfaceRadiance.size(); ++i)
+  {
+    const std::size_t parent = parents[i / width];
+    means[parent * width + i % width] += light.surfaceRadiance[i] / counts[parent];
+  }
+  std::transform(means.begin(), means.end(), coarse.surfaceRadiance.begin(), squares.begin(),
+    [](double fine, double other) { return (fine - other) * (fine - other); });
+  SmoothInFaces(squares, between.Coarse());
+  light.surfaceError.resize(light.surfaceRadiance.size());
+  for (std::size_t i = 0; i < light.surfaceError.size(); ++i)
+  {
+    const std::size_t k = parents[i / width] * width + i % width;
+    light.surfaceError[i] =
+      means[k] > 0.0 ? static_cast<float>(std::sqrt(squares[k]) * light.surfaceRadiance[i] / means[k]) : 0.0f;
+  }
+}
+
 /// Sets the error of a plane-parallel solve, which has only an angular error. The error is the difference from the
 /// fluence of a solve with fewer polar cosines.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
@@ -203,8 +309,11 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
   }
   const std::vector<double> sums = blocks.Comm().Sum({ ofSpace, ofDirections, SumOfSquares(fine) });
   const std::vector<float> seen = blocks.SeenOf(fine, light.channels);
-  WriteError(light, blocks, { fine, errors.Variance(fine, same, other) },
-    { seen, errors.Variance(seen, blocks.SeenOf(same, light.channels), blocks.SeenOf(other, light.channels)) });
+  const std::vector<float> seenSame = blocks.SeenOf(same, light.channels);
+  const std::vector<float> seenOther = blocks.SeenOf(other, light.channels);
+  light.errorLength = CorrelationLength(blocks, errors.Signed(seen, seenSame, seenOther), light.channels);
+  WriteError(
+    light, blocks, { fine, errors.Variance(fine, same, other) }, { seen, errors.Variance(seen, seenSame, seenOther) });
   const double scale = sums[2] > 0.0 ? 1.0 / sums[2] : 0.0;
   return { std::sqrt(scale * sums[0]), std::sqrt(scale * sums[1]),
     light.convergence.empty() ? 0.0 : light.convergence.back().residual };
@@ -236,7 +345,7 @@ LightField SolveWithErrorEstimate(const SceneBlock& scene, const PropagationSett
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
   plain.uncollidedDirections = light.uncollidedDirections; // the number chosen for the fine grid
-  const std::vector<float> many = solve(coarse.Scene(), plain, OfPart(monitor, FinePart, 0.95)).fluence;
+  const LightField many = solve(coarse.Scene(), plain, OfPart(monitor, FinePart, 0.95));
   plain.directionsPerFace = OtherDirections(directions);
   if (light.uncollidedDirections > 0)
   {
@@ -244,8 +353,9 @@ LightField SolveWithErrorEstimate(const SceneBlock& scene, const PropagationSett
   }
   const std::vector<float> few = solve(coarse.Scene(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
-  WriteErrorEstimate(light, blocks, many, few,
+  WriteErrorEstimate(light, blocks, many.fluence, few,
     PartOfDifference(directions, plain.directionsPerFace, orders.inDirections), orders.inSpace);
+  WriteSurfaceError(light, many, Coarsening(scene.domain.Whole()));
   return light;
 }
 }

@@ -272,13 +272,14 @@ private:
   }
 
   /// Sets the error estimate of a solution with halved voxels. The error due to voxel size follows from the difference
-  /// from the solution with the original voxels (Richardson); angular error and residual are taken from the previous
-  /// estimate.
+  /// from the solution with the original voxels (Richardson); angular error, residual and errorLength are taken from
+  /// the previous estimate.
   void EstimateOfDivided(LightField& light)
   {
     double errors = 0.0, all = 0.0;
     const double rest = std::hypot(this->Parts.inDirections, this->Parts.residual);
     const double part = 1.0 / (this->FallInHalves() - 1.0);
+    light.errorLength = this->Light.errorLength;
     light.fluenceError.resize(light.fluence.size());
     for (std::size_t i = 0; i < light.fluence.size(); ++i)
     {

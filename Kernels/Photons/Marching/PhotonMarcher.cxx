@@ -409,7 +409,9 @@ PhotonLight PhotonMarcher::Implementation::MarchInBatches(
     const double parts = static_cast<double>(batches);
     all.Add(this->MarchThese(some, own, nullptr, OfPart(monitor, b / parts, (b + 1) / parts)));
   }
-  return std::move(all).Sum();
+  PhotonLight result = std::move(all).Sum();
+  result.light.errorLength = std::cbrt(this->TheDomain.Whole().VoxelVolume()); // noise differs from voxel to voxel
+  return result;
 }
 
 PhotonLight PhotonMarcher::Implementation::March(

@@ -152,11 +152,11 @@ std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<Smal
 
 SharedScene PictureInBlocks::Shared(const Domain& domain, const SharedScene* own)
 {
-  std::vector<double> largest(6, Unknown);
+  std::vector<double> largest(7, Unknown);
   if (own)
   {
     largest = { -own->index.least, own->index.largest, own->coloured ? 1.0 : 0.0, -own->straightOn[0],
-      -own->straightOn[1], -own->straightOn[2] };
+      -own->straightOn[1], -own->straightOn[2], own->largestError };
   }
   largest = domain.Max(largest);
   SharedScene all;
@@ -165,6 +165,7 @@ SharedScene PictureInBlocks::Shared(const Domain& domain, const SharedScene* own
     all.index = { static_cast<float>(-largest[0]), static_cast<float>(largest[1]) };
     all.coloured = largest[2] > 0.0;
     all.straightOn = { -largest[3], -largest[4], -largest[5] };
+    all.largestError = largest[6];
   }
   return all;
 }

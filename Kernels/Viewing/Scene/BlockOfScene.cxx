@@ -42,6 +42,11 @@ SharedScene SharedSceneOf(
   {
     shared.straightOn[c] = LeastStraightOn(medium, light, c);
   }
+  const std::size_t errors = light.fluenceError.values ? medium.grid.VoxelCount() * light.fluenceError.components : 0;
+  for (std::size_t i = 0; i < errors; ++i)
+  {
+    shared.largestError = std::max<double>(shared.largestError, light.fluenceError.values[i]);
+  }
   return shared;
 }
 

@@ -67,6 +67,7 @@ struct SharedScene
   /// per channel, smallest straightOn (the fraction of scattering that the solver treats as unscattered) of the
   /// scattering voxels
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
+  double largestError = 0.0; ///< largest standard error of fluence, W / length^2; 0 if it is not known
 };
 
 /// SharedScene of one block. The reduction over all blocks by minimum, maximum and logical or gives the SharedScene of

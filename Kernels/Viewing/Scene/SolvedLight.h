@@ -35,6 +35,10 @@ struct SolvedLight
   std::array<Rgb, 6> faceRadiance = {};
   /// Standard error of `fluence`, W / length^2, with 1 or 3 components, for PictureError.h; null: not known.
   Field fluenceError = {};
+  /// Standard error of `surface`, LightField::surfaceError, and length over which errors of `fluence` have the same
+  /// sign, LightField::errorLength; null and 0: not known.
+  Field surfaceError = {};
+  double errorLength = 0.0;
 };
 
 struct ViewSettings;
