@@ -76,7 +76,6 @@ LightField SolveChannels(
   const FarLight far = FarLightOf(scene.shining, scene.directionsPerFace, settings);
   LightField light;
   light.channels = scene.channels;
-  bool diverged = false;
   double thickest = 0.0;
   for (int c = 0; c < light.channels; ++c)
   {
@@ -93,7 +92,6 @@ LightField SolveChannels(
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
       : SolveSweptOrders(device, ofChannel, angles, settings, part);
     domain.Collective([&] { TakeChannel(light, found, c); });
-    diverged = diverged || found.diverged;
     if (c == 0)
     {
       light.leftOut = Words(scene, far, angles.phase.Terms() == 1, settings);
@@ -102,7 +100,7 @@ LightField SolveChannels(
   }
   DescribeLight(light, device, far);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));
-  Judge(settings, diverged, domain, scene.medium, light);
+  Judge(settings, domain, scene.medium, light);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
   {

@@ -296,8 +296,7 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
   light.device = device.Name();
 }
 
-void Judge(
-  const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light)
+void Judge(const OrdinatesSettings& settings, const Domain& domain, const Medium& medium, LightField& light)
 {
   if (!IsPublished(settings))
   {
@@ -305,13 +304,8 @@ void Judge(
   }
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));
-  light.converged = !diverged && (isAsked || residual <= settings.tolerance);
-  if (diverged)
-  {
-    light.doubts.push_back("The light grows without end and was stopped after " +
-      std::to_string(light.convergence.size()) + " steps: it has no meaning.");
-  }
-  else if (!light.converged)
+  light.converged = isAsked || residual <= settings.tolerance;
+  if (!light.converged)
   {
     light.doubts.push_back("The light has not converged: after " + std::to_string(light.convergence.size()) +
       " orders its estimated relative error is " + Text("%.3g", residual) + ", Tolerance is " +

@@ -60,7 +60,6 @@ struct OrdinatesResult
   /// Outgoing power per area, W / length^2, by cell of the box's faces; empty: no face reflects.
   std::vector<float> facePower;
   std::vector<ConvergenceRow> convergence;
-  bool diverged = false;
   std::vector<std::string> leftOut; ///< what the sweeps of this channel omitted (LeftOut.h)
 };
 
@@ -145,6 +144,5 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
 /// Checks convergence and, except for the published scheme, the energy balance of `light` (Convergence.h). Collective.
 /// @param medium  of this rank's block, in the units of the solver
 /// @throws InvalidInput if the energy balance is off
-void Judge(
-  const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light);
+void Judge(const OrdinatesSettings& settings, const Domain& domain, const Medium& medium, LightField& light);
 }

@@ -598,6 +598,11 @@ bool MayRefuse(const StressSolver& solver, const StressCase& stressCase, const s
   {
     return true;
   }
+  if (solver.family == StressFamily::Ordinates && solver.Is(Published) && std::abs(stressCase.scene.g) > 0.9 &&
+    error.find("where the phase function scatters no more than comes") != std::string::npos)
+  {
+    return true;
+  }
   return std::any_of(stressCase.refusals.begin(), stressCase.refusals.end(), [&](const Refusal& refusal) {
     const bool ofPhotons = refusal.method == "photons" &&
       (solver.Is(OfPhotons) || solver.family == StressFamily::Emission || solver.family == StressFamily::Importance);

@@ -510,9 +510,22 @@ TEST_F(PublishedOrdinates, AreNotStableAboveOneMeanFreePathAVoxel)
   const LightField thick = this->SolveThickVoxels(1.5, OrdinatesScattering::SingularValues, 60);
   EXPECT_LT(least(thick), 0.0f);
   EXPECT_THAT(thick.doubts, testing::Contains(testing::HasSubstr("here it is up to 1.5")));
-  const LightField opaque = this->SolveThickVoxels(4.0, OrdinatesScattering::SingularValues, 200);
-  EXPECT_FALSE(opaque.converged);
-  EXPECT_THAT(opaque.doubts, testing::Contains(testing::HasSubstr("grows without end")));
+  const std::string opaque =
+    ErrorWords<InvalidInput>([&] { this->SolveThickVoxels(4.0, OrdinatesScattering::SingularValues, 200); });
+  EXPECT_THAT(opaque, testing::HasSubstr("grows without end"));
+  EXPECT_THAT(opaque, testing::HasSubstr("here up to 4)"));
+}
+
+// Between so few directions the point values of so narrow a phase function scatter many times what comes.
+TEST_F(PublishedOrdinates, RefuseAPhaseFunctionThatMakesLight)
+{
+  LitMedium scene({ 6, 6, 6 }, 0.06f, 0.24f);
+  scene.ShineFromEverywhere(1.0);
+  scene.ScatterWith(0.99);
+  scene.how.scheme = OrdinatesScheme::Published;
+  scene.how.scattering = OrdinatesScattering::SingularValues;
+  EXPECT_THAT(ErrorWords<InvalidInput>([&] { scene.SolveOrdinates(this->GetDevice()); }),
+    testing::HasSubstr("scatters no more than comes"));
 }
 
 TEST_F(PublishedOrdinates, AreTheSameByPassesAndByAllTerms)

@@ -377,13 +377,13 @@ TEST(BalanceOfOrdinates, IsJudgedOnAnyNumberOfRanks)
   {
     const auto errors = ErrorsOnRanks(BlockPartition::Even(medium.Grid(), ranks), [&](const Domain& domain) {
       LightField light = given;
-      Judge(settings, false, domain, medium.scene.medium, light);
+      Judge(settings, domain, medium.scene.medium, light);
     });
     EXPECT_THAT(
       errors, testing::Each(testing::HasSubstr("The light does not balance: 0.25 of the power is lost or made")));
   }
   settings.scheme = OrdinatesScheme::Published; // loses power, as its paper has it
-  Judge(settings, false, Domain(medium.Grid()), medium.scene.medium, given);
+  Judge(settings, Domain(medium.Grid()), medium.scene.medium, given);
 }
 
 class LatticeOnRanks : public SolvedOnRanks<LatticeSolver>

@@ -1,8 +1,10 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 
+#include "Device/Errors.h"
 #include "DiscreteOrdinates/ChannelArrays.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Medium/BoxFaces.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
@@ -15,7 +17,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-/// The radiance counts as diverging when a step changes it by more than this factor times the change by the first step.
+/// The radiance grows without bound if a step changes it by more than this factor times the change by the first step.
 constexpr double WithoutEnd = 1e4;
 
 /// One explicit step of the radiance along every direction, whose length is the shortest voxel edge (Gong et al., Eqs.
@@ -138,7 +140,9 @@ class PublishedOrders
 public:
   PublishedOrders(
     Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-    : Settings(settings)
+    : Scene(scene)
+    , Angles(angles)
+    , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
     , Step(device, scene.medium.grid, angles.groups, scene.incoming, settings.periodic)
     , Scattering(
@@ -195,7 +199,10 @@ private:
       this->Change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
     }
     this->FirstChange = this->Record.All().empty() ? this->Change : this->FirstChange;
-    this->Result.diverged = !(this->Change <= WithoutEnd * this->FirstChange);
+    if (!(this->Change <= WithoutEnd * this->FirstChange))
+    {
+      this->RefuseGrowth();
+    }
     this->Fluence = now;
     this->CountSteady();
     this->Record.Add(this->Change, this->Result.ledger);
@@ -215,10 +222,33 @@ private:
     this->Result.ledger.SetUnaccounted(0, this->Arrays.Stranded());
   }
 
+  /// Throws the error of a radiance that grows without bound.
+  [[noreturn]] void RefuseGrowth() const
+  {
+    const SeparablePhaseFunction& phase = this->Angles.phase;
+    double most = 0.0;
+    for (int from = 0; from < phase.DirectionCount(); ++from)
+    {
+      double sum = 0.0;
+      for (int to = 0; to < phase.DirectionCount(); ++to)
+      {
+        sum += phase.TheDirections()[to].weight * phase.Value(to, from);
+      }
+      most = std::max(most, sum);
+    }
+    throw InvalidInput("The light grows without end, and was stopped after " +
+      std::to_string(this->Record.All().size() + 1) +
+      " steps. Explicit steps as published are stable where sigma_t times the step, the shortest edge of a voxel, is "
+      "at most 1 (here up to " +
+      Text("%.3g", ThickestStep(this->Scene.medium, this->Scene.channel)) +
+      "), and where the phase function scatters no more than comes (along these directions up to " +
+      Text("%.3g", most) + " times of it). Choose the conservative scheme, more directions or smaller voxels.");
+  }
+
   bool Done() const
   {
     const int steps = static_cast<int>(this->Record.All().size());
-    if (this->Change == 0.0 || this->Result.diverged || steps >= MostSteps)
+    if (this->Change == 0.0 || steps >= MostSteps)
     {
       return true;
     }
@@ -248,6 +278,8 @@ private:
     this->Result.convergence = std::move(this->Record.All());
   }
 
+  const OrdinatesScene& Scene;
+  const OrdinatesAngles& Angles;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
   ExplicitStep Step;

@@ -9,8 +9,8 @@
 namespace tyndall
 {
 /// Solves one channel by the published scheme: explicit steps of the radiance until it changes little (Gong et al.,
-/// section 3). It does not conserve energy. If the radiance diverges, the solve stops and sets
-/// OrdinatesResult::diverged.
+/// section 3). It does not conserve energy.
+/// @throws InvalidInput  as soon as the radiance grows without bound
 /// @throws DeviceError, Aborted
 OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor);
