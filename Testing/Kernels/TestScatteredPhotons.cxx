@@ -286,6 +286,17 @@ TEST_F(ScatteredPhotonsTest, PlayFairly)
   EXPECT_LT(light.light.balance.RelativeError(1), 1e-6);
 }
 
+// A path absorbs less than the last digit of a photon's power, so that nothing was subtracted from it.
+TEST_F(ScatteredPhotonsTest, LoseWhatASinglePathHardlyAbsorbs)
+{
+  const Scene scene = Cube(3, 300.0, 1.0 - 3e-8);
+  const EnergyBalance balance =
+    this->March(scene, ThroughTheBottom(scene.medium.grid, 1000, true, 3), AllOrders()).light.balance;
+  ASSERT_GT(balance.absorbed[0], 1e-6);
+  EXPECT_NEAR(
+    balance.absorbed[0] + balance.escaped[0] + balance.leftOver[0], balance.entered[0], 0.05 * balance.absorbed[0]);
+}
+
 TEST_F(ScatteredPhotonsTest, KeepColoursApart)
 {
   Scene scene({ 4, 4, 4 }, 0.2f, 1.0f);

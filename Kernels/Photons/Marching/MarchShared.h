@@ -161,9 +161,11 @@ typedef struct
   uint blocks; ///< number of blocks of four random numbers (Philox.cl) that the photon has drawn
   int drawn;   ///< number of unused random numbers in the last of these blocks
   int events;  ///< path segments since the last scattering; 0: the photon starts anew, in the direction `way.velocity`
-  int scatterings;                         ///< number of scatterings of the photon
-  float depth;                             ///< scattering optical depth to the next collision
-  float dim;                               ///< power below which Russian roulette is played
+  int scatterings; ///< number of scatterings of the photon
+  float depth;     ///< scattering optical depth to the next collision
+  float dim;       ///< power below which Russian roulette is played
+  /// absorbed power that is still to be subtracted from `power`, since floats do not hold the difference
+  float owed;
   float power, absorbedAtFirst, exchanged; ///< powers, in units of PackedPhotons::unit, see ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END

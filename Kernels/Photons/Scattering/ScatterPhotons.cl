@@ -107,6 +107,7 @@ typedef struct
 {
   ScatterEnd end; // final state that the photon would have if it ended now
   random_numbers random;
+  float owed;  // absorbed power too small for end.power to hold, which is still to be subtracted from it
   float dim;   // power below which Russian roulette is played, in units of PackedPhotons::unit
   float depth; // scattering optical depth to the next scattering
   int events;  // number of path segments since the last scattering
@@ -152,6 +153,7 @@ static void hand_on(
   to->depth = flight->depth;
   to->dim = flight->dim;
   to->power = flight->end.power;
+  to->owed = flight->owed;
   to->absorbedAtFirst = flight->end.absorbedAtFirst;
   to->exchanged = flight->end.exchanged;
 }
@@ -162,6 +164,7 @@ static void take_over(const march_arrays* arrays, const ScatterInfo* how, const 
   const ScatterEnd end = { -1, from->scatterings, from->power, from->absorbedAtFirst, from->exchanged };
   flight->end = end;
   flight->random = random_after(how->seed, from->number, from->blocks, from->drawn);
+  flight->owed = from->owed;
   flight->dim = from->dim;
   flight->depth = from->depth;
   flight->events = from->events;
@@ -200,6 +203,8 @@ static void roulette(scattered_flight* flight)
   ScatterEnd* end = &flight->end;
   if (end->power < flight->dim)
   {
+    end->power -= flight->owed;
+    flight->owed = 0.0f;
     const float after = draw(&flight->random) * 2.0f * flight->dim < end->power ? 2.0f * flight->dim : 0.0f;
     end->exchanged += after - end->power;
     end->power = after;
@@ -239,8 +244,9 @@ static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* 
 // Deposits and attenuates the photon's power over a path segment of `way` voxel diagonals.
 //   sigma  optical thickness of the voxel's diagonal, by scattering and by absorption
 static void leave_stretch(
-  const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, ScatterEnd* end)
+  const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, scattered_flight* flight)
 {
+  ScatterEnd* end = &flight->end;
   float remains;
   const float tau = sigma.y * way, lost = extinguished(tau, &remains);
   if (end->scatterings > 0)
@@ -253,7 +259,16 @@ static void leave_stretch(
   {
     end->absorbedAtFirst += end->power * lost;
   }
-  end->power = tau > 0.5f ? end->power * remains : end->power - end->power * lost;
+  if (tau > 0.5f)
+  {
+    end->power *= remains;
+    flight->owed *= remains;
+    return;
+  }
+  // Compensated, since a float loses nothing by a product with 1 - 3e-8: over many paths that would be much.
+  const float before = end->power, subtracted = flight->owed + before * lost;
+  end->power = before - subtracted;
+  flight->owed = subtracted - (before - end->power);
 }
 
 // Follows the photon to its next voxel wall or change of velocity, or to a scattering before that.
@@ -269,7 +284,7 @@ static void go_on(const march_arrays* arrays, const scattering* medium, const Sc
   const float length = fmax(next - lanes->now[0], 0.0f) * lanes->pace[0], spent = sigma.x * length;
   const bool collides = spent >= flight->depth;
   const float way = collides ? fmin(flight->depth / sigma.x, length) : length;
-  leave_stretch(arrays, lanes, sigma, way, end);
+  leave_stretch(arrays, lanes, sigma, way, flight);
   if (!collides)
   {
     flight->depth -= spent;
@@ -298,6 +313,7 @@ static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __
   const ScatterEnd end = { -1, 0, photon[6], 0.0f, 0.0f };
   flight->end = end;
   flight->random = random_of(how->seed, number);
+  flight->owed = 0.0f;
   flight->dim = DIM * end.power;
   flight->events = 0;
   begin(arrays, lanes, vload3(0, photon), vload3(1, photon));
@@ -354,6 +370,7 @@ static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, c
     hand_on(arrays, &lanes, &flight, medium->gone + atomic_add(medium->gone_count, 1));
   }
 #endif
+  flight.end.power -= flight.owed;
   return flight.end;
 }
 
