@@ -238,9 +238,10 @@ void WriteFacts(const LightField& light, vtkImageData* output)
     channels);
   const std::array<Rgb, 6>& out = light.facePowerOut;
   AddFact(output, "face_power_out", Channels({ out[0], out[1], out[2], out[3], out[4], out[5] }, channels), channels);
-  if (light.halfRangeFlux > 0.0)
+  if (const Rgb& flux = light.halfRangeFlux; flux[0] > 0.0)
   {
-    AddFact(output, "half_range_flux", std::vector<double>{ light.halfRangeFlux }, 1);
+    const bool one = channels == 1 || (flux[1] == flux[0] && flux[2] == flux[0]);
+    AddFact(output, "half_range_flux", Channels({ flux }, one ? 1 : 3), one ? 1 : 3);
   }
   if (!light.storedDirections.empty())
   {

@@ -109,15 +109,15 @@ tyndall::LightField vtkDiscreteOrdinates::Solve(const tyndall::SolverScene& scen
   scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
   const tyndall::OrdinatesSettings settings = SettingsOf(this, scene, *device);
-  const tyndall::SceneBlock block = { scene.domain, scene.medium, scene.shining.illumination };
+  const tyndall::SceneBlock block = { scene.domain, scene.medium, scene.shining.illumination, {}, last };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0 && !this->Preview)
   {
-    return tyndall::SolveOrdinatesToTarget(within, block, settings, this->TargetError, monitor, last);
+    return tyndall::SolveOrdinatesToTarget(within, block, settings, this->TargetError, monitor);
   }
   tyndall::LightField light = this->Preview ? SolvePreview(this, within, scene, settings)
     : this->EstimateError
-    ? tyndall::EstimateOrdinates(within, block, settings, monitor, last)
+    ? tyndall::EstimateOrdinates(within, block, settings, monitor)
     : tyndall::SolveDiscreteOrdinates(within, block.domain, block.medium, block.illumination, settings, monitor, last);
   light.settingsUsed = tyndall::Words(settings, light);
   return light;
@@ -128,7 +128,7 @@ void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
   this->Superclass::Note(light);
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
-  this->HalfRangeFlux = light.halfRangeFlux;
+  this->HalfRangeFlux = light.halfRangeFlux[0];
 }
 
 void vtkDiscreteOrdinates::ShareResults(tyndall::Communicator& ranks)

@@ -82,17 +82,13 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
 
 /// Solver function for the filter's Scheme and Algorithm.
 /// @param device  null for the sequential algorithm
-/// @param ofGrid  the medium on its original grid; solutions on coarser or divided grids are not kept for WarmStart
-/// @param last  storage of the solution that is kept for WarmStart; null if WarmStart is off
-tyndall::PropagationSolver SolverOf(vtkLightPropagationMaps* filter, const std::shared_ptr<tyndall::Device>& device,
-  const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
+tyndall::PropagationSolver SolverOf(vtkLightPropagationMaps* filter, const std::shared_ptr<tyndall::Device>& device)
 {
   return [=](const tyndall::SceneBlock& scene, const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    tyndall::KeptLight* const kept = &scene.medium == ofGrid ? last : nullptr;
     return !device ? tyndall::SolveSequential(scene.medium, scene.illumination, how, watch)
       : filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED
       ? SolvePublished(filter, *device, scene.medium, scene.illumination, how, watch)
-      : tyndall::SolveConservative(*device, scene.domain, scene.medium, scene.illumination, how, watch, kept);
+      : tyndall::SolveConservative(*device, scene.domain, scene.medium, scene.illumination, how, watch, scene.kept);
   };
 }
 
@@ -159,15 +155,17 @@ std::string vtkLightPropagationMaps::ReasonNotToDecompose(const tyndall::SolverS
 tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& given)
 {
   const tyndall::PropagationSettings settings = SettingsOn(this, given);
-  const tyndall::SceneBlock scene = { given.domain, given.medium, given.shining.illumination };
-  const tyndall::PropagationSolver solve =
-    SolverOf(this, DeviceOnAll(this, given.domain), &scene.medium, this->Last->Where(this->WarmStart));
+  const tyndall::SceneBlock scene = { given.domain, given.medium, given.shining.illumination, {},
+    this->Last->Where(this->WarmStart) };
+  const tyndall::PropagationSolver solve = SolverOf(this, DeviceOnAll(this, given.domain));
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0 && !this->Preview)
   {
-    tyndall::TargetLight found = tyndall::SolveToTargetError(scene, settings, this->TargetError, monitor, solve);
-    std::vector<std::string> used = tyndall::Words(found.settings, found.light);
-    return tyndall::LightOf(std::move(found), std::move(used));
+    return tyndall::SolveColours(scene, monitor, [&](const tyndall::SceneBlock& colour, const tyndall::Monitor& watch) {
+      tyndall::TargetLight found = tyndall::SolveToTargetError(colour, settings, this->TargetError, watch, solve);
+      std::vector<std::string> used = tyndall::Words(found.settings, found.light);
+      return tyndall::LightOf(std::move(found), std::move(used));
+    });
   }
   tyndall::LightField light = this->Preview
     ? tyndall::SolvePreview(scene, settings, tyndall::PreviewGrid(given.domain.Whole()),
@@ -187,7 +185,7 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Superclass::Note(light);
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
-  this->HalfRangeFlux = light.halfRangeFlux;
+  this->HalfRangeFlux = light.halfRangeFlux[0];
 }
 
 void vtkLightPropagationMaps::ShareResults(tyndall::Communicator& ranks)

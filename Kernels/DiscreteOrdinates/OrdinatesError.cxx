@@ -80,40 +80,47 @@ OrdinatesSettings With(const OrdinatesSettings& given, const PropagationSettings
 }
 
 /// The solver as a function of the settings that error estimates choose.
-PropagationSolver SolverOf(
-  Device& device, const SceneBlock& ofScene, const OrdinatesSettings& given, bool choosesTerms, KeptLight* kept)
+PropagationSolver SolverOf(Device& device, const OrdinatesSettings& given, bool choosesTerms)
 {
-  return [&device, &given, choosesTerms, kept, own = &ofScene.medium](
-           const SceneBlock& scene, const PropagationSettings& how, const Monitor& monitor) {
-    return SolveDiscreteOrdinates(device, scene.domain, scene.medium, scene.illumination,
-      With(given, how, choosesTerms), monitor, &scene.medium == own ? kept : nullptr);
-  };
+  return
+    [&device, &given, choosesTerms](const SceneBlock& scene, const PropagationSettings& how, const Monitor& monitor) {
+      return SolveDiscreteOrdinates(
+        device, scene.domain, scene.medium, scene.illumination, With(given, how, choosesTerms), monitor, scene.kept);
+    };
+}
+
+LightField SolveToTarget(
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, double target, const Monitor& monitor)
+{
+  const int most = settings.scattering == OrdinatesScattering::SphericalHarmonics ? MostDirections : MostWithMatrix;
+  SpatialScheme scheme(device, scene, settings);
+  scheme.orders.mostDirections = DirectionsThatFit(scene.domain, most, MemoryOf(device));
+  const bool choosesTerms = settings.terms == OrdinatesSettings().terms;
+  TargetLight found = SolveToTargetError(
+    scene, AsPropagation(settings), target, monitor, SolverOf(device, scheme.settings, choosesTerms), scheme.orders);
+  std::vector<std::string> used = Words(With(settings, found.settings, choosesTerms), found.light);
+  return LightOf(std::move(found), std::move(used));
 }
 }
 
 LightField EstimateOrdinates(
-  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor)
 {
   RefuseAsPublished(IsPublished(settings), "EstimateError");
   const SpatialScheme scheme(device, scene, settings);
   return SolveWithErrorEstimate(
-    scene, AsPropagation(settings), monitor, SolverOf(device, scene, scheme.settings, false, kept), scheme.orders);
+    scene, AsPropagation(settings), monitor, SolverOf(device, scheme.settings, false), scheme.orders);
 }
 
-LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
-  double target, const Monitor& monitor, KeptLight* kept)
+LightField SolveOrdinatesToTarget(
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, double target, const Monitor& monitor)
 {
   RefuseAsPublished(IsPublished(settings), "TargetError");
   Require(settings.spiralDirections <= 0,
     "TargetError chooses the number of directions per face of a cube, and SpiralDirections is " +
       std::to_string(settings.spiralDirections) + ". Set TargetError or SpiralDirections to 0.");
-  const int most = settings.scattering == OrdinatesScattering::SphericalHarmonics ? MostDirections : MostWithMatrix;
-  SpatialScheme scheme(device, scene, settings);
-  scheme.orders.mostDirections = DirectionsThatFit(scene.domain, most, MemoryOf(device));
-  const bool choosesTerms = settings.terms == OrdinatesSettings().terms;
-  TargetLight found = SolveToTargetError(scene, AsPropagation(settings), target, monitor,
-    SolverOf(device, scene, scheme.settings, choosesTerms, kept), scheme.orders);
-  std::vector<std::string> used = Words(With(settings, found.settings, choosesTerms), found.light);
-  return LightOf(std::move(found), std::move(used));
+  return SolveColours(scene, monitor, [&](const SceneBlock& colour, const Monitor& ofColour) {
+    return SolveToTarget(device, colour, settings, target, ofColour);
+  });
 }
 }

@@ -13,20 +13,19 @@ namespace tyndall
 /// (ErrorEstimate.h). The estimate needs two more solves, on a grid of half the voxels per axis. The second of these
 /// has fewer directions and, in the same proportion, fewer terms of the phase function. The error of replacing a mean
 /// cosine that varies by voxel by its mean is not included. Collective.
-/// @param kept  light of the previous solve on the scene's grid, as for SolveDiscreteOrdinates; null: none
 /// @throws InvalidInput  for the published scheme, which has no estimate
 /// @throws the exceptions of SolveDiscreteOrdinates
-LightField EstimateOrdinates(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
-  const Monitor& monitor = {}, KeptLight* kept = nullptr);
+LightField EstimateOrdinates(
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor = {});
 
 /// Solves a scene by discrete ordinates to a target error, as SolveToTargetError (TargetError.h). It chooses directions
 /// per cube face, terms of the phase function (in proportion to the directions), tolerance, and whether to halve the
-/// voxels; settings other than the default values are not changed. The radiance along all directions takes at most half
+/// voxels, for each colour on its own (SolveColours); settings other than the default values are not changed. The radiance along all directions takes at most half
 /// of the device's memory on the scene's grid. Collective.
 /// @param target  relative error, in (0, 1)
 /// @return the light, with settingsUsed and solves; `doubts` has a warning if the target was missed
 /// @throws InvalidInput  for the published scheme, for directions on a spiral, and if the target is out of range
 /// @throws the exceptions of SolveDiscreteOrdinates
 LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
-  double target, const Monitor& monitor = {}, KeptLight* kept = nullptr);
+  double target, const Monitor& monitor = {});
 }

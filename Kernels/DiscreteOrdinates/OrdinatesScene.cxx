@@ -292,7 +292,7 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
   std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
+  light.halfRangeFlux.fill(HalfRangeFlux({ 0, false, far.directions }));
   light.device = device.Name();
 }
 

@@ -48,7 +48,7 @@ void ForNumbers(LightField& light, const Visit& visit)
     ofColor(*rgb);
   }
   std::for_each(light.facePowerOut.begin(), light.facePowerOut.end(), ofColor);
-  visit(light.halfRangeFlux);
+  ofColor(light.halfRangeFlux);
   for (ConvergenceRow& row : light.convergence)
   {
     for (double* const number :

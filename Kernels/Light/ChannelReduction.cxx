@@ -215,6 +215,13 @@ void AddReport(LightField& light, const LightField& channel)
   add(light.doubts, channel.doubts);
   add(light.leftOut, channel.leftOut);
   light.converged = light.converged && channel.converged;
+  light.relativeError = channel.relativeError <= light.relativeError ? light.relativeError : channel.relativeError;
+  light.solves = std::max(light.solves, channel.solves);
+  for (std::size_t i = 0; i < std::min(light.settingsUsed.size(), channel.settingsUsed.size()); ++i)
+  {
+    const std::string& other = channel.settingsUsed[i];
+    light.settingsUsed[i] += other == light.settingsUsed[i] ? "" : ", " + other.substr(other.find("= ") + 2);
+  }
   std::vector<ConvergenceRow>&rows = light.convergence, more = channel.convergence;
   const bool longer = more.size() > rows.size();
   light.sweepsSaved = longer ? channel.sweepsSaved : light.sweepsSaved;
@@ -269,6 +276,7 @@ LightField JoinChannels(std::vector<LightField> channels)
     put(light.balance.absorbed, one.balance.absorbed);
     put(light.balance.escaped, one.balance.escaped);
     put(light.balance.leftOver, one.balance.leftOver);
+    put(light.halfRangeFlux, one.halfRangeFlux);
     for (std::size_t face = 0; face < light.facePowerOut.size(); ++face)
     {
       put(light.facePowerOut[face], one.facePowerOut[face]);

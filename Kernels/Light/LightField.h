@@ -59,8 +59,8 @@ struct SolveReport
   /// Estimated root-mean-square error of the fluence, relative to the root mean square of the fluence. 0: not
   /// requested; NaN: not known.
   double relativeError = 0.0;
-  /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
-  double halfRangeFlux = 0.0;
+  /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h), by channel; 0: there is none.
+  Rgb halfRangeFlux = {};
   std::vector<ConvergenceRow> convergence;
   /// Number of sweeps that the initial guess saved, for each convergence row. It is the number of the row at which the
   /// last solve without a guess reached the same residual, minus the number of this row. 0 if this solve had no guess.

@@ -166,7 +166,8 @@ private:
   double Shining(int c) const
   {
     const bool own = !this->Outcome.halfRangeFlux.empty() && !this->Solver.Is(bench::OfPhotons);
-    const double carried = own ? this->Outcome.halfRangeFlux[0] : 1.0;
+    const std::vector<double>& flux = this->Outcome.halfRangeFlux;
+    const double carried = own ? flux[std::min<std::size_t>(c, flux.size() - 1)] : 1.0;
     const Vector& h = this->Scene.spacing;
     double area[3], power = 0.0;
     for (int axis = 0; axis < 3; ++axis)

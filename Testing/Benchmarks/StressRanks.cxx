@@ -121,7 +121,7 @@ void Tell(const LightField& light, double tolerance, StressOutcome& outcome)
 {
   outcome.channels = light.channels;
   outcome.warnings = light.doubts;
-  outcome.halfRangeFlux.assign(light.halfRangeFlux > 0.0 ? 1 : 0, light.halfRangeFlux);
+  outcome.halfRangeFlux.assign(light.halfRangeFlux[0] > 0.0 ? 1 : 0, light.halfRangeFlux[0]);
   outcome.residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual / tolerance;
   const EnergyBalance& balance = light.balance;
   for (const Rgb& fact : { balance.entered, balance.emitted, balance.absorbed, balance.escaped, balance.leftOver })

@@ -95,7 +95,7 @@ struct StressOutcome
   std::vector<float> fluence, fluenceDirect, netFlux, fluenceError;
   std::vector<double> balance;       ///< entered, emitted, absorbed, escaped, left over; `channels` each
   std::vector<double> facePowerOut;  ///< -x, +x, -y, +y, -z, +z; `channels` each
-  std::vector<double> halfRangeFlux; ///< one, of maps
+  std::vector<double> halfRangeFlux; ///< of maps and ordinates; one, or one a channel
   std::vector<double> scattered;     ///< W, of photons
   std::vector<float> directions;     ///< mean directions, 3 a voxel, of photons
   double residual = 0.0;             ///< of grids, what the solver says is left, over its tolerance

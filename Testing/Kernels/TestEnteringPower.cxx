@@ -121,7 +121,7 @@ TEST_F(EnteringPower, OfAFaceIsItsAreaTimesTheFluxOfTheDirections)
       const double exact =
         setting.periodic[face / 2] ? 0.0 : 2.0 * Area(scene.medium.grid, face / 2) * Flux(set, face / 2, 1.0, {});
       EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting) << ", face " << face;
-      EXPECT_NEAR(light.halfRangeFlux, Flux(set, face / 2, 1.0, {}) / 3.14159265358979, 1e-9) << Text(setting);
+      EXPECT_NEAR(light.halfRangeFlux[0], Flux(set, face / 2, 1.0, {}) / 3.14159265358979, 1e-9) << Text(setting);
       EXPECT_LT(light.balance.RelativeError(1), 1e-5) << Text(setting) << ", face " << face;
     }
   }

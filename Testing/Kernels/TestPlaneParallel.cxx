@@ -201,7 +201,7 @@ TEST_F(PlaneParallel, LeavesAFurnaceAsItIs)
     EXPECT_NEAR(light.netFlux[3 * i + 1], 0.0, 1e-6);
   }
   EXPECT_NEAR(light.facePowerOut[2][0], Pi, 1e-6);
-  EXPECT_NEAR(light.balance.entered[0], 2.0 * Pi * light.halfRangeFlux, 1e-6);
+  EXPECT_NEAR(light.balance.entered[0], 2.0 * Pi * light.halfRangeFlux[0], 1e-6);
 }
 
 // The table of mean cosines by depth is that of a beam, of which all of what a layer loses is known.

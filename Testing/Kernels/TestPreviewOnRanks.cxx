@@ -50,7 +50,7 @@ void AddFigures(LightField& light, const Illumination& illumination)
 {
   light.balance.escaped = { 1.0, 2.0, 3.0 };
   light.facePowerOut = illumination.uncollided.escaped;
-  light.halfRangeFlux = 0.25;
+  light.halfRangeFlux = { 0.25, 0.5, 0.75 };
   light.directionsPerFace = 36;
   light.uncollidedDirections = 100;
   light.polarNodes = 16;

@@ -3,10 +3,13 @@
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
+#include "Light/ChannelReduction.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Accuracy/TargetError.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace tyndall;
@@ -113,6 +116,46 @@ TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
     EXPECT_TRUE(!found.met || RelativeRmse(found.light.fluence, exact) <= target)
       << target << ": " << RelativeRmse(found.light.fluence, exact) << ", estimated " << found.light.relativeError;
   }
+}
+
+TEST_F(TargetError, OfColoursIsThatOfEachAlone)
+{
+  const Scene scene = Cloud();
+  Medium medium = scene.medium;
+  std::vector<float> sigma_a, sigma_s;
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    for (const float factor : { 1.0f, 0.01f, 8.0f })
+    {
+      sigma_a.push_back(factor * scene.sigma_a[i]);
+      sigma_s.push_back(factor * scene.sigma_s[i]);
+    }
+  }
+  medium.sigma_a = { sigma_a.data(), 3 };
+  medium.sigma_s = { sigma_s.data(), 3 };
+  Illumination faint = scene.light;
+  faint.faces[2] = { 1.0, 1e-3, 1.0 };
+  const auto solve = [&](const SceneBlock& block, const Monitor& monitor) {
+    TargetLight found = SolveToTargetError(block, {}, 0.03, monitor, SolverOn(this->GetDevice()));
+    std::vector<std::string> words = Words(found.settings, found.light);
+    return LightOf(std::move(found), std::move(words));
+  };
+  const Domain domain(medium.grid);
+  const LightField all = SolveColours({ domain, medium, faint }, {}, solve);
+  double largest = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const OneChannelScene one(medium, faint, c);
+    const LightField alone = solve({ domain, one.medium, one.light }, {});
+    for (std::size_t i = 0; i < alone.fluence.size(); ++i)
+    {
+      ASSERT_EQ(all.fluence[3 * i + c], alone.fluence[i]) << c << ", " << i;
+    }
+    EXPECT_EQ(all.halfRangeFlux[c], alone.halfRangeFlux[0]);
+    largest = std::max(largest, alone.relativeError);
+  }
+  EXPECT_EQ(all.relativeError, largest);
+  EXPECT_NE(all.settingsUsed[0].find(", "), std::string::npos) << all.settingsUsed[0]; // a number a colour
 }
 
 TEST_F(TargetError, LeavesWhatWasChosen)

@@ -3,6 +3,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/CoarseBlocks.h"
 #include "Distribution/Domain.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -21,6 +22,9 @@ struct SceneBlock
   const Medium& medium;
   const Illumination& illumination;
   Field index = {}; ///< a further quantity by voxel, such as the refractive index; may have no values
+  /// Light of the last solve of this scene, with which the next one starts and which it replaces (WarmStart); null, on
+  /// all ranks: none is kept.
+  KeptLight* kept = nullptr;
 };
 
 /// A scene averaged to a coarser grid over the same box. Coefficients are means over the coarse voxels, g is weighted

@@ -2,6 +2,8 @@
 
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "Light/ChannelReduction.h"
+#include "Light/KeptLight.h"
 #include "Light/Quality.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
@@ -341,6 +343,30 @@ private:
   int Solves = 0;
   std::string WhyNot;
 };
+}
+
+LightField SolveColours(const SceneBlock& scene, const Monitor& monitor,
+  const std::function<LightField(const SceneBlock&, const Monitor&)>& solve)
+{
+  const Domain& domain = scene.domain;
+  if (!domain.Any(!domain.IsEmpty() && !TraitsOf(scene.medium, true).grey))
+  {
+    return solve(scene, monitor);
+  }
+  constexpr int Colours = 3;
+  if (scene.kept)
+  {
+    scene.kept->channels.resize(Colours);
+  }
+  std::vector<LightField> channels;
+  for (int c = 0; c < Colours; ++c)
+  {
+    const OneChannelScene one(scene.medium, scene.illumination, c);
+    channels.push_back(
+      solve({ domain, one.medium, one.light, scene.index, scene.kept ? &scene.kept->channels[c] : nullptr },
+        OfPart(monitor, c / 3.0, (c + 1) / 3.0)));
+  }
+  return JoinChannels(std::move(channels));
 }
 
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings)

@@ -20,6 +20,12 @@ struct TargetLight
   double seconds = 0.0;         ///< total time of all solves, s
 };
 
+/// Solves a scene to a target error, each colour on its own if the medium is coloured: every colour then meets the
+/// target, with the directions that it needs and with the same light as a scene of this colour alone. Collective.
+/// @param solve  solves a scene to the target; returns the light with `solves` and `settingsUsed`
+LightField SolveColours(const SceneBlock& scene, const Monitor& monitor,
+  const std::function<LightField(const SceneBlock&, const Monitor&)>& solve);
+
 /// The light of a search for a target error, with its members `solves` and `settingsUsed` set.
 /// @param settings  settings of the final solve, as texts "Name = value"; VoxelsDividedBy is appended
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings);

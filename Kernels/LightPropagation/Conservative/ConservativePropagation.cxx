@@ -229,8 +229,8 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found)
   {
     AddShown(parts, found.shown, light);
   }
-  light.halfRangeFlux = HalfRangeFlux(
-    (parts.Lights.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Lights.Fine : parts.Usual).Set());
+  light.halfRangeFlux.fill(HalfRangeFlux(
+    (parts.Lights.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Lights.Fine : parts.Usual).Set()));
   light.uncollidedDirections = parts.Lights.FineBoundary ? parts.Lights.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();

@@ -116,7 +116,7 @@ public:
     this->FillFaces(light);
     this->FillMoments(light);
     this->Balance(light);
-    light.halfRangeFlux = 1.0;
+    light.halfRangeFlux.fill(1.0);
     light.polarNodes = static_cast<int>(this->Nodes.cosines.size());
     light.directionsPerFace = this->Settings.directionsPerFace;
     light.device = "host, one core";

@@ -351,7 +351,7 @@ void WritePublishedLight(const PublishedModel& model, const Medium& medium, cons
   field.scatteredRadiance = ScatteredRadiance(model, moment);
   field.netFlux = settings.netFlux ? NetFlux(model, moment) : std::vector<float>();
   field.leftOut = LeftOut(medium, traits, illumination, settings, field.convergence.size());
-  field.halfRangeFlux = HalfRangeFlux(model.Directions());
+  field.halfRangeFlux.fill(HalfRangeFlux(model.Directions()));
   JudgeConvergence(settings, field, false);
 }
 
