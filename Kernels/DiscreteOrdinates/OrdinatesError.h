@@ -18,10 +18,11 @@ namespace tyndall
 LightField EstimateOrdinates(
   Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor = {});
 
-/// Solves a scene by discrete ordinates to a target error, as SolveToTargetError (TargetError.h). It chooses directions
-/// per cube face, terms of the phase function (in proportion to the directions), tolerance, and whether to halve the
-/// voxels, for each colour on its own (SolveColours); settings other than the default values are not changed. The radiance along all directions takes at most half
-/// of the device's memory on the scene's grid. Collective.
+/// Solves a scene by discrete ordinates to a target error, as SolveToTargetError (TargetError.h), each colour of a
+/// coloured medium on its own (SolveColours). It chooses directions per cube face, terms of the phase function (in
+/// proportion to the directions), tolerance, and whether to halve the voxels; settings other than the default values
+/// are not changed. The radiance along all directions takes at most half of the device's memory on the scene's grid.
+/// Collective.
 /// @param target  relative error, in (0, 1)
 /// @return the light, with settingsUsed and solves; `doubts` has a warning if the target was missed
 /// @throws InvalidInput  for the published scheme, for directions on a spiral, and if the target is out of range
