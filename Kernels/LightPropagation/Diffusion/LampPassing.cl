@@ -7,12 +7,12 @@
 
 // Fraction of a voxel's first-scattered light that returns to the face through which lamp light enters (`back` of
 // numerics.md, Eq. (69)), if the density of first collisions decreases as exp(-b t) with the optical depth t < tau
-// behind that face, and light is attenuated by exp(-k t) on its way back. The constant b follows from r = 1 - 2 t_mean
-// / tau, where t_mean is the mean optical depth of first collisions: r is 0 if t_mean lies at the voxel's centre, 1 if
-// it lies at the face.
-static float comes_back(float tau, float r, float k)
+// behind that face, and light is attenuated by exp(-k t) on its way back. The constant b follows from depth = 2 t_mean
+// / tau, where t_mean is the mean optical depth of first collisions: 1 if it is that of the voxel's centre, 0 if it is
+// that of the face.
+static float comes_back(float tau, float depth, float k)
 {
-  const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
+  const float x = fall_behind(fmax(depth, 1e-6f)), y = x + k * tau;
   const float shone = x < 1e-3f ? 1.0f - 0.5f * x : -expm1(-x) / x;
   const float back = y < 1e-3f ? 1.0f - 0.5f * y : -expm1(-y) / y;
   return back / shone;
@@ -20,14 +20,14 @@ static float comes_back(float tau, float r, float k)
 
 // Fraction of a voxel's first-scattered light that crosses an inner face, minus the fraction that would cross it if all
 // light scattered at the voxel's centre; without the factor way_i / (way_i + way_j) of numerics.md, Eqs. (66) and (69).
-static float passes_inside(float tau, float r, float k)
+static float passes_inside(float tau, float depth, float k)
 {
   if (k * tau < 0.02f)
   {
-    return r;
+    return 1.0f - depth;
   }
   const float even = -expm1(-k * tau) / (k * tau);
-  return fmax((comes_back(tau, r, k) - even) / (1.0f - even), 0.0f);
+  return fmax((comes_back(tau, depth, k) - even) / (1.0f - even), 0.0f);
 }
 
 // Mean of Hopf's function with the weight exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
@@ -47,16 +47,16 @@ static float beside_sweeps(float tau)
 
 // Fraction of a voxel's first-scattered light that crosses a face of the box, minus the fraction that would cross it if
 // all light scattered at the voxel's centre (numerics.md, Eqs. (66), (69)).
-static float passes_border(float tau, float r, float k)
+static float passes_border(float tau, float depth, float k)
 {
-  const float depth = 0.5f * (1.0f - r) * tau;
-  const float q = mix(2.0f / 3.0f, hopf(depth), r);
+  const float mean = 0.5f * depth * tau;
+  const float q = mix(hopf(mean), 2.0f / 3.0f, depth);
   if (k * tau < 0.02f)
   {
-    return fmax(1.0f - (depth + q) / (0.5f * tau + 2.0f / 3.0f), 0.0f);
+    return fmax(1.0f - (mean + q) / (0.5f * tau + 2.0f / 3.0f), 0.0f);
   }
   const float even = -expm1(-k * tau) / (k * tau * (1.0f + k * (2.0f / 3.0f)));
-  const float kept = 1.0f - comes_back(tau, r, k) / (1.0f + k * q);
+  const float kept = 1.0f - comes_back(tau, depth, k) / (1.0f + k * q);
   return fmax(1.0f - kept / (1.0f - even), 0.0f);
 }
 
@@ -93,24 +93,25 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     const int axis = d / 2;
     const float h = layout.spacing[axis];
     const float tau = sigma_t[i] * h;
-    const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
+    const float moment = first_moments[d * stride + i];
+    const float depth = length > 0.0f ? fmax((length - 2.0f * moment) / length, 0.0f) : 1.0f; // 1 - r, Eq. (66)
     part[d] = 0.0f;
     // Where sweeps use more extinction than the diffusion system, angular moments represent forward scattering, which
     // does not send light back through its entry face.
-    if (tau <= 0.0f || r <= 0.0f || even <= 0.0f)
+    if (tau <= 0.0f || moment <= 0.0f || depth >= 1.0f || even <= 0.0f)
     {
       continue;
     }
     if (is_border(&layout, at, d))
     {
-      part[d] = even * passes_border(tau, r, k) * beside_sweeps(tau);
+      part[d] = even * passes_border(tau, depth, k) * beside_sweeps(tau);
     }
     else if (layout.size[axis] > 1)
     {
       const int j = next[d];
       const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
       const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
-      part[d] = even * passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
+      part[d] = even * passes_inside(tau, depth, k) * way / (way + beyond) * beside_sweeps(tau);
     }
     sum += part[d];
   }

@@ -26,19 +26,19 @@
 
 // Adds first moments: the path integral in a voxel times the mean position of the loss relative to the voxel's centre,
 // along the pyramid's axis and laterally (numerics.md, Eqs. (37), (38)).
-//   way   start and end of the step, in layers from the beam's start
-//   mean  centre of the cross-section's part in the voxel, half way through the step
-static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
-  float2 tangent, float tau, float lost, float path, __global long* first_moments, ulong stride)
+//   way    start and end of the step, in layers from the beam's start
+//   begin  the beam's start, moved aside to the middle of the cross-section's part in the voxel, relative to the
+//          voxel's lower edges
+static void add_moments(const LampInfo* lamp, const BeamRow* row, float2 way, float2 begin, float2 tangent, float tau,
+  float lost, float path, __global long* first_moments, ulong stride)
 {
   const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
   const float at = mix(way.x, way.y, part);
-  const float aside = at - 0.5f * (way.x + way.y);
   float from_middle[3];
-  const float along = row->from + (row->up ? at : -at);
-  from_middle[0] = along - floor(along) - 0.5f; // removes laps around a periodic axis
-  from_middle[1] = mean.x + aside * tangent.x - 0.5f;
-  from_middle[2] = mean.y + aside * tangent.y - 0.5f;
+  const float along = row->from - floor(row->from) + (row->up ? at : -at); // small, so that little is rounded off
+  from_middle[0] = along - floor(along) - 0.5f;                            // removes laps around a periodic axis
+  from_middle[1] = begin.x + at * tangent.x - 0.5f;
+  from_middle[2] = begin.y + at * tangent.y - 0.5f;
   for (int a = 0; a < 3; ++a)
   {
     const float distance = clamp(from_middle[a], -0.5f, 0.5f);
@@ -80,11 +80,11 @@ static void add_in_vacuum(const LampInfo* lamp, const BeamRow* row, const int* a
 // One step of a beam. Positions along the pyramid's axis are in layers from the beam's start, lateral ones in voxels.
 typedef struct
 {
-  int layer;            // layer of voxels, wrapped around a periodic axis
-  float2 tangent;       // lateral voxels per layer
-  float2 middle, width; // centre and width of the cross-section half way through the step
-  float2 way;           // start and end of the step
-  float length;         // path length of the step
+  int layer;             // layer of voxels, wrapped around a periodic axis
+  float2 begin, tangent; // lateral position at the beam's start, voxels; lateral voxels per layer
+  float2 middle, width;  // centre and width of the cross-section half way through the step
+  float2 way;            // start and end of the step
+  float length;          // path length of the step
 } beam_step;
 
 // Cross-section of a beam half way through a step, inside the box. It overlaps up to two voxels along each of u and v.
@@ -103,11 +103,14 @@ typedef struct
   float waiting;   // share of the remaining power that has not reached the box yet
 } step_power;
 
-// Centre of the part of an interval that lies in its first voxel (`next` 0) or in the next one (1), relative to that
-// voxel's lower edge.
-static float centre_in_voxel(float2 edges, int first, int next)
+// Start of a beam, moved aside as far as the middle of the part of its cross-section that lies in its first voxel
+// (`next` 0) or in the next one (1) is beside the beam's, relative to that voxel's lower edge. Differences are taken
+// near 0: in opaque voxels the depth of a loss is a small part of its place in the box.
+static float begin_in_voxel(float begin, float2 edges, float middle, int first, int next)
 {
-  return next ? 0.5f * (edges.y - first - 1.0f) : 0.5f * (fmin(edges.y - first, 1.0f) + edges.x - first);
+  const float centre = next ? 0.5f * (edges.y + first + 1.0f) : 0.5f * (fmin(edges.y, first + 1.0f) + edges.x);
+  const float aside = centre - middle;
+  return begin - (first + next) + (fabs(aside) < 1e-5f ? 0.0f : aside);
 }
 
 // Attenuates the part of a beam's cross-section that lies in one voxel, and deposits the power lost (numerics.md, Eq.
@@ -166,9 +169,10 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
   }
   if (MOMENTS && counts && tau > 0.5f * THIN)
   {
-    const float2 mean = (float2)(centre_in_voxel(section->edgesU, section->lowestU, q & 1),
-      centre_in_voxel(section->edgesV, section->lowestV, q >> 1));
-    add_moments(lamp, row, voxel, step->way, mean, step->tangent, tau, lost, counted, path + stride + index, stride);
+    const float2 begin =
+      (float2)(begin_in_voxel(step->begin.x, section->edgesU, step->middle.x, section->lowestU, q & 1),
+        begin_in_voxel(step->begin.y, section->edgesV, step->middle.y, section->lowestV, q >> 1));
+    add_moments(lamp, row, step->way, begin, step->tangent, tau, lost, counted, path + stride + index, stride);
   }
   const bool thick = lost < 0.5f * tau;
   after.remaining += thick ? power * through : power;
@@ -458,7 +462,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       {
         return true;
       }
-      const beam_step step = { layer, tangent, middle, width, (float2)(t0, t1), length };
+      const beam_step step = { layer, begin, tangent, middle, width, (float2)(t0, t1), length };
       if (stretch == SHORT_OF && pass_through(lamp, row, &step, sigma, beam))
       {
         waiting = 0.0f;

@@ -246,7 +246,8 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
   }
 }
 
-// Adds a lamp's first moments to those of the deposit. One work-item per voxel and channel.
+// Adds a lamp's first moments to those of the deposit. One work-item per voxel and channel. In opaque voxels a moment
+// is nearly half of the path integral: their difference, the depth of the losses, is taken before rounding to floats.
 // fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
 // first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][voxel]; the kernel adds to it
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
@@ -256,13 +257,14 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
+  const float divisor = units_of(sigma[sigma_first + i], diagonal);
+  const float path = (float)fixed_path[i] * unit * gain_of(gains, i) / divisor;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const float towards = (float)fixed_path[(1 + axis) * stride + i] * unit * gain_of(gains, i) /
-      units_of(sigma[sigma_first + i], diagonal);
-    __global float* of_axis = first_moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
-    of_axis[0] += fmax(-towards, 0.0f);
-    of_axis[stride] += fmax(towards, 0.0f);
+    const long moment = fixed_path[(1 + axis) * stride + i];
+    const long beyond = fixed_path[i] - 2 * (long)abs(moment);
+    const float towards = 0.5f * (path - (float)beyond * unit * gain_of(gains, i) / divisor);
+    first_moments[6 * (first + channel * stride) + (2 * axis + (moment > 0)) * stride + i] += fmax(towards, 0.0f);
   }
 }
 
