@@ -9,6 +9,7 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tyndall
 {
@@ -17,6 +18,9 @@ namespace
 /// Optical thickness of the thickest voxel above which the position of first scattering within voxels is taken into
 /// account.
 constexpr double ThickForFirstMoments = 0.1;
+/// Fraction of a voxel's first-collision source below which what does not leave the voxel at once is rounding: in a
+/// voxel of 10^8 mean free paths it would have a fluence far above that of the light around.
+constexpr double RoundedPart = 1e-6;
 constexpr float Elsewhere = -1.0f; ///< sigma_s of ghost cells, which are excluded from sums
 
 double Ratio(double of, double to)
@@ -206,11 +210,13 @@ void UncollidedLight::FindScatteredInVoxels()
   this->TheDomain.Collective([&] {
     const std::vector<float> passed = this->ThroughFaces.Read(), lengths = this->Parts.Path.Read();
     const auto scattered = [&](std::size_t i, int c) {
-      double power = this->Parts.Problem.Scattering().SigmaS(i, c) * lengths[c * layout.Stride() + i];
+      const double all = this->Parts.Problem.Scattering().SigmaS(i, c) * lengths[c * layout.Stride() + i];
+      double power = all;
       for (int d = 0; d < 6; ++d)
       {
         power -= passed[(6 * c + d) * layout.Stride() + i];
       }
+      power = std::abs(power) < RoundedPart * all ? 0.0 : power;
       return static_cast<float>(power / (4.0 * Pi * layout.grid.VoxelVolume()));
     };
     this->ScatteredInVoxels =

@@ -1,11 +1,13 @@
 #include "LightPropagation/Uncollided/GivenLight.h"
 
+#include "Distribution/Halo.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -43,6 +45,51 @@ double NearnessToFace(double tau)
 {
   return tau < 0.05 ? tau / 6.0 : 1.0 - 2.0 * (1.0 / tau - 1.0 / std::expm1(tau));
 }
+
+/// Estimate of the uncollided fluence at the faces of a block's voxels, from the means over voxels.
+class LightAtFaces
+{
+public:
+  /// @param around  halo of one voxel around the block
+  /// @param known  fluence and extinction of the voxels of the block with its halo, [voxel][channel][2]
+  LightAtFaces(const Halo& around, std::vector<float>&& known, int channels)
+    : Around(around)
+    , Grown(around.KnownGrid())
+    , Known(std::move(known))
+    , Channels(channels)
+  {
+  }
+
+  /// Fluence that comes to the six faces of voxel i of the block from beyond them: that of the neighbour, attenuated
+  /// over its edge `h`; at the box's faces, that which falls to the voxel's mean. All 1 where nothing comes.
+  std::array<double, 6> Of(std::size_t i, int channel, const std::array<double, 3>& h) const
+  {
+    const std::array<int, 3> at = this->Around.Known().Within(this->Around.Own().VoxelAt(i));
+    const std::array<std::size_t, 3> step = this->Grown.Strides();
+    const std::size_t here = this->Grown.IndexOf(at);
+    std::array<double, 6> light;
+    for (std::size_t d = 0; d < 6; ++d)
+    {
+      const std::size_t a = d / 2;
+      const bool outside = d % 2 == 0 ? at[a] == 0 : at[a] + 1 == this->Grown.size[a];
+      const std::size_t from = outside ? here : d % 2 == 0 ? here - step[a] : here + step[a];
+      const float* const values = &this->Known[2 * (from * static_cast<std::size_t>(this->Channels) + channel)];
+      const double x = 2.0 * h[a] * values[1];
+      light[d] = values[0] * (x < 1e-3 ? 1.0 : outside ? x / -std::expm1(-x) : x / std::expm1(x));
+    }
+    if (*std::max_element(light.begin(), light.end()) == 0.0)
+    {
+      light.fill(1.0);
+    }
+    return light;
+  }
+
+private:
+  const Halo& Around;
+  Grid Grown; ///< the block with its halo
+  std::vector<float> Known;
+  int Channels;
+};
 
 double LeastOfPeak(int degree, double fall)
 {
@@ -97,13 +144,15 @@ GivenLight::GivenLight(const UncollidedImage& image, const Medium& medium, const
 SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) const
 {
   const VolumeLayout& layout = volume.layout;
+  const double size = layout.grid.VoxelVolume();
+  const std::vector<float> path = Planar(layout, layout.channels,
+    [&](std::size_t i, int c) { return static_cast<float>(size * this->Image.fluence.At(i, c)); });
+  const std::vector<float> moments =
+    volume.deposit.firstMoments ? this->FirstMoments(volume, path) : std::vector<float>();
   if (layout.grid.VoxelCount() == 0)
   {
     return {};
   }
-  const double size = layout.grid.VoxelVolume();
-  const std::vector<float> path = Planar(layout, layout.channels,
-    [&](std::size_t i, int c) { return static_cast<float>(size * this->Image.fluence.At(i, c)); });
   const std::vector<float> flux = Along(layout, path, this->Image.meanDirection);
   if (volume.basis)
   {
@@ -116,7 +165,7 @@ SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) con
   }
   if (volume.deposit.firstMoments)
   {
-    AddFirst(volume.device, this->FirstMoments(layout, path), *volume.deposit.firstMoments);
+    AddFirst(volume.device, moments, *volume.deposit.firstMoments);
   }
   if (!volume.basis && volume.deposit.flux)
   {
@@ -125,28 +174,46 @@ SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) con
   return TallyOf(this->Image, this->TheMedium, 0, layout.channels);
 }
 
-std::vector<float> GivenLight::FirstMoments(const VolumeLayout& layout, const std::vector<float>& path) const
+std::vector<float> GivenLight::FirstMoments(const UncollidedVolume& volume, const std::vector<float>& path) const
 {
+  const VolumeLayout& layout = volume.layout;
+  const int channels = layout.channels;
+  std::vector<float> own;
+  for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      own.push_back(this->Image.fluence.At(i, c));
+      own.push_back(static_cast<float>(this->Scattering.SigmaT(i, c)));
+    }
+  }
+  const Halo around(volume.domain.Comm(), volume.domain.Partition(), volume.periodic, 1);
+  const LightAtFaces light(around, around.Spread(own, 2 * channels), channels);
   const std::array<double, 3>& h = layout.grid.spacing;
-  const double faces = 1.0 / h[0] + 1.0 / h[1] + 1.0 / h[2];
   std::vector<float> moments(layout.Floats(6), 0.0f);
-  for (std::size_t at = 0; at < layout.channels * layout.grid.VoxelCount(); ++at)
+  for (std::size_t at = 0; at < channels * layout.grid.VoxelCount(); ++at)
   {
     const std::size_t i = at % layout.grid.VoxelCount(), c = at / layout.grid.VoxelCount();
     const Field& mean = this->Image.meanDirection;
     const std::array<double, 3> way = { mean.At(i, 0), mean.At(i, 1), mean.At(i, 2) };
     const double narrow = std::min(std::hypot(way[0], way[1], way[2]), 1.0);
-    const double ahead = std::abs(way[0]) / h[0] + std::abs(way[1]) / h[1] + std::abs(way[2]) / h[2];
-    const double half = 0.5 * path[c * layout.Stride() + i];
+    const std::array<double, 6> enters = light.Of(i, static_cast<int>(c), h);
+    double evenly = 0.0, ahead = 0.0;
     for (std::size_t a = 0; a < 3; ++a)
     {
-      const double tau = this->Scattering.SigmaT(i, static_cast<int>(c)) * h[a], along = std::abs(way[a]);
-      const double even = half * (1.0 - narrow) / (2.0 * h[a] * faces) * NearnessToFace(2.0 * tau);
-      const double beam =
-        along > 0.0 ? half * narrow * along / (h[a] * ahead) * NearnessToFace(tau * narrow / along) : 0.0;
-      float* const low = &moments[(6 * c + 2 * a) * layout.Stride() + i];
-      low[0] = static_cast<float>(even + (way[a] > 0.0 ? beam : 0.0));
-      low[layout.Stride()] = static_cast<float>(even + (way[a] < 0.0 ? beam : 0.0));
+      evenly += (enters[2 * a] + enters[2 * a + 1]) / h[a];
+      ahead += enters[2 * a + (way[a] > 0.0 ? 0 : 1)] * std::abs(way[a]) / h[a];
+    }
+    const double half = 0.5 * path[c * layout.Stride() + i];
+    for (std::size_t d = 0; d < 6; ++d)
+    {
+      const double edge = h[d / 2], along = d % 2 == 0 ? way[d / 2] : -way[d / 2];
+      const double tau = this->Scattering.SigmaT(i, static_cast<int>(c)) * edge;
+      const double even = evenly > 0.0 ? (1.0 - narrow) * enters[d] / (edge * evenly) * NearnessToFace(2.0 * tau) : 0.0;
+      const double beam = along > 0.0 && ahead > 0.0
+        ? narrow * enters[d] * along / (edge * ahead) * NearnessToFace(tau * narrow / along)
+        : 0.0;
+      moments[(6 * c + d) * layout.Stride() + i] = static_cast<float>(half * (even + beam));
     }
   }
   return moments;

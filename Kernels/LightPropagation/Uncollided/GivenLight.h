@@ -31,9 +31,9 @@ public:
 private:
   /// First moments (Deposit::firstMoments) of the light (numerics.md, Eq. (41f)). In each voxel, a fraction of the
   /// light equal to the length of the mean direction is taken to enter through the faces upstream of that direction,
-  /// the remainder through all faces in proportion to their areas.
+  /// the remainder through all faces, both in proportion to the light that comes to the faces. Collective.
   /// @param path  path integrals, W length, [channel][voxel]
-  std::vector<float> FirstMoments(const VolumeLayout& layout, const std::vector<float>& path) const;
+  std::vector<float> FirstMoments(const UncollidedVolume& volume, const std::vector<float>& path) const;
 
   const UncollidedImage& Image;
   const Medium& TheMedium;
