@@ -40,6 +40,7 @@ typedef struct
   ulong stride;
   ulong firstT, firstSource; ///< index of the channel's first value in the extinction, and in an isotropic source
   int ofMean;                ///< what sums over directions hold, see SweptSums::ofMean
+  float thin;                ///< extinction up to which a sweep by diamond differences has mean chords, 1/length
 } SweptLayers;
 
 /// Range of voxels that a launch of a scattering kernel processes.

@@ -242,7 +242,7 @@ static inline __attribute__((always_inline)) void sweep_layers(
         const real tau = (real)sigma_t[first + i] * chord;
         const real in[3] = { from_x, from_y, from_z };
         real mean, out[3];
-        if (mode & ByDiamonds)
+        if (mode & ByDiamonds && sigma_t[first + i] > layers->thin)
         {
           const real weight[3] = { reciprocal_weight(tau * chords[0]), reciprocal_weight(tau * chords[1]),
             reciprocal_weight(tau * chords[2]) };

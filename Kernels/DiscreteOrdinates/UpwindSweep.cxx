@@ -14,6 +14,9 @@ namespace
 {
 /// upper bound of the chord of a direction through a voxel, in voxel edges, for directions along which nothing varies
 constexpr double LongestChord = 1e6;
+/// Optical length of a voxel's longest edge up to which sweeps by diamond differences have mean chords: beside opaque
+/// voxels, diamonds overshoot in voxels that are nearly empty.
+constexpr double ThinForDiamonds = 0.01;
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
@@ -39,6 +42,7 @@ SweptLayers PartOf(const Grid& grid, const VoxelBox& box, int part)
   layers.part = part;
   layers.end = part == SweepsBox ? box.size[2] : grid.size[2];
   layers.stride = OrdinateStride(grid.VoxelCount());
+  layers.thin = static_cast<float>(ThinForDiamonds / *std::max_element(grid.spacing.begin(), grid.spacing.end()));
   return layers;
 }
 }
