@@ -82,7 +82,7 @@ LightField SolveChannels(
     thickest = std::max(thickest, domain.Max(ThickestStep(scene.medium, c)));
     const PhaseFunction function = FunctionOf(domain, scene.medium, c);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions),
-      SeparableOf(function, far.directions, settings, scene.muchThinner), function };
+      SeparableOf(function, far.directions, settings, scene.muchThinner || settings.seriesAfter > 0), function };
     domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
     const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
       IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),

@@ -21,8 +21,8 @@ Grid PreviewGrid(const Grid& grid);
 /// voxels remain cubic; the grid itself if it cannot be halved.
 Grid CubicPreviewGrid(const Grid& grid);
 
-constexpr double PreviewTolerance = 0.1; ///< tolerance of a preview: relative error of fluence
-constexpr int PreviewDirections = 4;     ///< directions of a preview per cube face
+constexpr double PreviewTolerance = 0.05; ///< tolerance of a preview: relative error of fluence
+constexpr int PreviewDirections = 4;      ///< directions of a preview per cube face
 /// Scattering orders of a preview by discrete ordinates; later orders are extrapolated as a geometric series.
 constexpr int PreviewOrders = 24;
 
