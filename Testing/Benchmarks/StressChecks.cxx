@@ -185,6 +185,16 @@ private:
     return power;
   }
 
+  /// Four standard errors of the part of a spot's random photons that get into the box; other lamps aim at it.
+  double ByChance() const
+  {
+    const double photons = static_cast<double>(PhotonsFor(this->Solver, this->Scene));
+    const std::vector<Lamp>& lamps = this->Scene.lamps;
+    return this->Solver.Is(AtRandom) && !lamps.empty() && lamps[0].kind == Lamp::Spot
+      ? 4.0 * std::sqrt(std::max(0.0, 1.0 - this->Case.lampsInside) / photons)
+      : 0.0;
+  }
+
   void Entering()
   {
     if (this->Case.lampsInside < 0.0 || (this->Solver.Is(bench::OfPhotons) && !this->Outcome.warnings.empty()))
@@ -198,7 +208,7 @@ private:
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
-      !exact                         ? 1e-3
+      !exact                         ? std::max(1e-3, this->ByChance())
         : this->Solver.IsOfLattice() ? 1e-5 // of light that is handed over
                                      : 1e-6);
   }

@@ -44,7 +44,8 @@ enum StressTrait : unsigned
   Unturned = 1u << 12u,     ///< directions that do not turn with the scene
   OwnTolerance = 1u << 15u, ///< a tolerance that the filter chooses
   Noisy = 1u << 14u,        ///< an index with noise
-  ByImportance = 1u << 13u  ///< photons where an importance map sends them
+  ByImportance = 1u << 13u, ///< photons where an importance map sends them
+  AtRandom = 1u << 16u      ///< photons whose number that reaches the box is by chance
 };
 
 /// A row: a chain of filters with options.

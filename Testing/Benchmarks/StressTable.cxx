@@ -101,7 +101,7 @@ std::vector<StressSolver> OwnRows()
     { "octree, all", Family::Octree, 0, With<vtkRefractionOctree>([](auto* all) { all->SetLeaveOut(false); }),
       "octree" },
     { "emitter", Family::Emission },
-    { "emitter, random", Family::Emission, 0,
+    { "emitter, random", Family::Emission, AtRandom,
       With<Emitter>([](auto* emitter) { emitter->SetSampler(Emitter::RANDOM); }) },
     { "emitter, importance", Family::Emission, ByImportance },
     { "importance", Family::Importance },
