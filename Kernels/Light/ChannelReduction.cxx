@@ -270,6 +270,7 @@ LightField JoinChannels(std::vector<LightField> channels)
       lamp.power[c] = power;
       lamps.push_back(lamp);
     }
+    light.errorLength = std::max(light.errorLength, one.errorLength);
     const auto put = [c](Rgb& all, const Rgb& channel) { all[c] = channel[0]; };
     put(light.balance.entered, one.balance.entered);
     put(light.balance.emitted, one.balance.emitted);
