@@ -231,7 +231,8 @@ private:
       light.balance.escaped[c] = area * (column.escaped[0] + column.escaped[1]);
       for (std::size_t side = 0; side < 2; ++side)
       {
-        light.facePowerOut[2 * static_cast<std::size_t>(this->Scene.Along()) + side][c] = area * column.escaped[side];
+        light.facePowerOut[2 * static_cast<std::size_t>(this->Scene.Along()) + side][c] =
+          area * std::max(column.escaped[side], 0.0); // below 0 by rounding behind opaque layers
       }
       absorbed += light.balance.absorbed[c];
       escaped += light.balance.escaped[c];
