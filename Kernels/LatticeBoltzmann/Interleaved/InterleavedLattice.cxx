@@ -149,8 +149,10 @@ void InterleavedLattice::Take(const cl::CommandQueue& queue, const Buffer<float>
 }
 
 /// Copies the light of all photons to Light, in the problem's units and channels.
-void InterleavedLattice::TakeAll(const PhotonLight& photons)
+/// @return whether any of it is so faint beside the emission that floats do not hold it
+bool InterleavedLattice::TakeAll(const PhotonLight& photons)
 {
+  bool faint = false;
   const auto all = static_cast<std::size_t>(this->Problem->Channels());
   const auto given = static_cast<std::size_t>(photons.light.channels);
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
@@ -160,8 +162,9 @@ void InterleavedLattice::TakeAll(const PhotonLight& photons)
     const std::size_t from = std::min(static_cast<std::size_t>(channel.takes.from), given - 1);
     for (std::size_t i = 0; i < voxels; ++i)
     {
-      this->Light.fluence[i * all + c] =
-        static_cast<float>(channel.takes.fluence * photons.light.fluence[i * given + from]);
+      const float fluence = photons.light.fluence[i * given + from];
+      this->Light.fluence[i * all + c] = static_cast<float>(channel.takes.fluence * fluence);
+      faint = faint || (fluence > 0.0f && this->Light.fluence[i * all + c] == 0.0f);
     }
     for (std::size_t face = 0; face < 6; ++face)
     {
@@ -181,6 +184,7 @@ void InterleavedLattice::TakeAll(const PhotonLight& photons)
     channel.emits = Buffer<float>();
     channel.lattice->UpdateSources();
   }
+  return faint;
 }
 
 LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor)
@@ -194,7 +198,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   const double start = ClockSeconds();
   const PhotonLight found = marcher.MarchByTurns(photons, turns, OfPart(monitor, 0.0, 0.3));
   const TurnTimes& times = turns.times;
-  this->TakeAll(found);
+  const bool faint = this->TakeAll(found);
   const double marched =
     // the time is divided among the channels, since the rows of the convergence table are summed over them
     (ClockSeconds() - start) / static_cast<double>(this->Channels.size());
@@ -210,6 +214,12 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   }
   FinishLight(light, this->TheDevice, *this->Problem, this->Shining, this->Settings, thickest);
   DoubtPhotons(found, photons.size(), light);
+  if (faint)
+  {
+    light.doubts.emplace_back(
+      "Beside the emission, the photons' light is fainter than floats hold, and left out: solve "
+      "it alone if it matters.");
+  }
   if (this->Settings.sideBySide && times.together < Overlap * std::min(times.marching, times.meanwhile))
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);

@@ -77,7 +77,7 @@ private:
   void Begin(const PackedPhotons& packed, int channels);
   std::array<cl::Event, 2> Step(const cl::CommandQueue& queue);
   void Take(const cl::CommandQueue& queue, const Buffer<float>& fluence);
-  void TakeAll(const PhotonLight& photons);
+  bool TakeAll(const PhotonLight& photons);
 
   /// The lattice of one channel, the channel of the photons' light that it uses, and the arguments of
   /// Lattice::SetSourceOf by which its source is updated.
