@@ -135,7 +135,11 @@ std::string RunCell(const Cell& cell)
     const bool clear = outcome.errors.size() == 1 && outcome.empty && MayRefuse(solver, asked, outcome.errors[0]);
     const std::string verdict = clear ? "refused" : "WRONG";
     line.Add("verdict", verdict).Add("errors", static_cast<double>(outcome.errors.size()));
-    line.Add("error", outcome.errors[0]).Print();
+    for (std::size_t i = 0; i < outcome.errors.size(); ++i)
+    {
+      line.Add(i == 0 ? "error" : ("error_" + std::to_string(i + 1)).c_str(), outcome.errors[i]);
+    }
+    line.Print();
     return verdict;
   }
   const bool hasTwin = asked.twin && !solver.IsView() && !solver.IsStage();

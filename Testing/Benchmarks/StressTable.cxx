@@ -255,12 +255,13 @@ std::size_t PhotonsFor(const StressSolver& solver, const StressScene& scene)
 namespace
 {
 /// Thickest voxel along its shortest edge, mean free paths.
-double ThickestOf(const StressScene& scene)
+/// @param cosine  mean cosine of scattering, for what is solved by the similarity relation
+double ThickestOf(const StressScene& scene, double cosine = 0.0)
 {
   double thickest = 0.0;
   for (std::size_t i = 0; i < scene.absorption.size(); ++i)
   {
-    const double scatters = scene.scattering.empty() ? 0.0 : scene.scattering[i];
+    const double scatters = scene.scattering.empty() ? 0.0 : (1.0 - cosine) * scene.scattering[i];
     thickest = std::max(thickest, scatters + scene.absorption[i]);
   }
   return thickest * *std::min_element(scene.spacing.begin(), scene.spacing.end());
@@ -277,7 +278,8 @@ bool Concerns(const StressSolver& row, const StressCase& stressCase)
   {
     return shone && ScatteringsOf(scene) <= MostScatterings;
   }
-  if (row.Is(Published) && (row.family == Family::Ordinates || row.IsOfLattice()) && !(ThickestOf(scene) < 1.0))
+  const double thickest = ThickestOf(scene, row.IsOfLattice() ? std::min(scene.g, 0.0) : 0.0);
+  if (row.Is(Published) && (row.family == Family::Ordinates || row.IsOfLattice()) && !(thickest < 1.0))
   {
     return false; // steps as published are not stable there, and say so
   }
