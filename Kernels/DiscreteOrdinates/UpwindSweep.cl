@@ -83,7 +83,8 @@ inline real reciprocal_weight(real x)
 //   gain   source times length of the mean chord
 //   in     radiance that enters through each face;  out: receives the radiance that leaves
 // Returns the mean radiance. If the radiance that leaves through a face would be negative, it is set to 0. This happens
-// at no more than two faces of a voxel, and power is conserved.
+// at no more than two faces of a voxel, and power is conserved. If the source is negative (truncated angular
+// moments) or the mean radiance is, light leaves through all faces: else no face might be left.
 inline real cross_by_diamonds(real tau, const real* share, const real* weight, real gain, const real* in, real* out)
 {
   real flows[3], kept[3];
@@ -115,7 +116,7 @@ inline real cross_by_diamonds(real tau, const real* share, const real* weight, r
     for (int a = 0; a < 3; ++a)
     {
       kept[a] = round == 0 ? (real)1.0f : kept[a];
-      kept[a] = select(kept[a], (real)0.0f, out[a] < (real)0.0f);
+      kept[a] = select(kept[a], (real)0.0f, (out[a] < (real)0.0f) & (mean > (real)0.0f) & (gain >= (real)0.0f));
       enters = multiply_add(mix(share[a], flows[a], kept[a]), in[a], enters);
       leaves = multiply_add(flows[a], kept[a], leaves);
     }

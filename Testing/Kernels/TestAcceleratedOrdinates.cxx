@@ -155,6 +155,27 @@ TEST_F(AcceleratedOrdinates, TendToTheLightOfSourceIteration)
   EXPECT_LT(fine, 0.7 * coarse);
 }
 
+/// Truncated moments have negative sources. In vacuum beside them no light left a voxel: 0 / 0.
+TEST_F(AcceleratedOrdinates, AreNumbersInVacuumBesideNegativeSources)
+{
+  for (const double g : { 0.68, 0.85 })
+  {
+    LitMedium cube = Cube(18, 4.0, 0.986);
+    cube.ScatterWith(g);
+    ForGridVoxels(cube.medium.grid.size, [&](std::size_t voxel, int i, int j, int k) {
+      const double wave = std::sin(1.1 * i + 0.7) + std::sin(0.9 * j + 2.0) + std::sin(1.3 * k + 0.4 * j);
+      const float factor = wave < 0.0 ? 0.0f : static_cast<float>(std::exp(1.2 * wave));
+      cube.sigma_a[voxel] *= factor;
+      cube.sigma_s[voxel] *= factor;
+    });
+    cube.light.faces[4] = { 1.0, 1.0, 1.0 };
+    const LightField light = cube.SolveOrdinates(this->GetDevice());
+    EXPECT_LT(light.convergence.size(), 20u) << g;
+    ExpectFiniteAndNotNegative(light.fluence);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-4) << g;
+  }
+}
+
 TEST_F(AcceleratedOrdinates, FillAFurnaceWithFacesThatReflect)
 {
   for (const double g : { 0.0, 0.7 })
