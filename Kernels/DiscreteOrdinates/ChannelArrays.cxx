@@ -5,6 +5,7 @@
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Conservative/BlockTransport.h"
 #include "LightPropagation/Emission/UncollidedEmission.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/BoxFaces.h"
@@ -202,6 +203,63 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
     scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), *volume.deposit.path, sigma_s, target);
   });
   return tally;
+}
+
+void ChannelArrays::AddFaces(
+  const Buffer<float>& radiance, const std::array<bool, 3>& periodic, EnergyLedger& ledger, const Monitor& monitor)
+{
+  const BoundaryLight* faces = this->Scene.faces;
+  if (!faces)
+  {
+    return;
+  }
+  std::optional<AngularBasis> basis;
+  std::optional<BlockTransport> transport;
+  Buffer<float> moments;
+  this->Scene.domain.Collective([&] {
+    basis.emplace(DirectionSet{ 0, false, this->Angles.groups.TheDirections() }, this->Scene.facesDegree);
+    moments = Buffer<float>(this->TheDevice, this->Layout.MomentFloats(basis->Count()), "the light of faces");
+    moments.Fill(0.0f);
+    transport.emplace(this->TheDevice, this->Scene.domain, this->Layout, this->SigmaT, periodic);
+  });
+  const int c = this->Scene.channel;
+  const SweepTally tally = SweepAlong(
+    transport->VolumeOf({ &moments }, this->Voxels > 0 ? &*basis : nullptr), faces->Along(),
+    [&](int d) { return faces->IsLit(d); }, nullptr,
+    [&](int d, int face) {
+      return Rgb{ faces->Incoming(d, face)[c], 0.0, 0.0 };
+    },
+    monitor);
+  this->CountLamp(tally, ledger);
+  this->Scene.domain.Collective([&] { this->Spread(*basis, moments, radiance); });
+}
+
+/// Adds light given by the angular moments of its path integrals to the radiance of all directions.
+void ChannelArrays::Spread(const AngularBasis& basis, const Buffer<float>& moments, const Buffer<float>& radiance) const
+{
+  if (this->Voxels == 0)
+  {
+    return;
+  }
+  const OrdinateGroups& groups = this->Angles.groups;
+  const double perPath = 1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume());
+  std::vector<float> values(groups.Lanes() * basis.Count());
+  for (std::size_t lane = 0; lane < groups.Lanes(); ++lane)
+  {
+    const std::size_t g = lane / OrdinateLanes, ofGroup = lane % OrdinateLanes;
+    const std::vector<double> here = basis.At(groups.Of(static_cast<int>(g), static_cast<int>(ofGroup)).omega);
+    for (std::size_t k = 0; k < here.size(); ++k)
+    {
+      values[(g * here.size() + k) * OrdinateLanes + ofGroup] = static_cast<float>(perPath * here[k]);
+    }
+  }
+  const Buffer<float> functions(this->TheDevice, values, "the angular functions");
+  cl::Kernel spread =
+    this->TheDevice.Kernel("spread_moments", kernel_source::UpwindSweep, Define("REAL_WIDTH", OrdinateLanes));
+  With(spread, this->Layout.Places(basis.Count()), cl_int(0), cl_int(0), cl_ulong(this->Layout.Stride()), moments,
+    functions, radiance, cl_ulong(OrdinateStride(this->Voxels)), cl_int(1));
+  Launch(this->TheDevice, spread, cl::NDRange(this->Voxels, groups.Count()));
+  this->TheDevice.Finish(); // the kernel reads `functions`, which is destroyed on return
 }
 
 /// Adds the uncollided light computed by another solver, and its first-collision source.

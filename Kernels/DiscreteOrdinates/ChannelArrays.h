@@ -3,6 +3,7 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
@@ -41,7 +42,11 @@ public:
   ///   `source` times Scale. On return, if light was added, the source is the element itself, and Scale is 1
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
-  /// Power of lamp light that wraps around periodic axes without end, because nothing attenuates it, W.
+  /// Adds light of faces that is carried along rays (OrdinatesScene::faces), in angular moments, to the radiance of all
+  /// directions. Does nothing without such light. Collective.
+  void AddFaces(
+    const Buffer<float>& radiance, const std::array<bool, 3>& periodic, EnergyLedger& ledger, const Monitor& monitor);
+  /// Power of uncollided light that wraps around periodic axes without end, because nothing attenuates it, W.
   double Stranded() const { return this->GoingRound; }
 
   /// Power absorbed and power scattered by the medium at a given fluence, W.
@@ -82,6 +87,7 @@ private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
+  void Spread(const AngularBasis& basis, const Buffer<float>& moments, const Buffer<float>& radiance) const;
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
   float EmissionOf(std::size_t voxel, bool emptyVoxels) const;
   SweepTally AddVacuum(UncollidedVolume volume, const LampScattering& scattering, const Buffer<float>& sigma_s,

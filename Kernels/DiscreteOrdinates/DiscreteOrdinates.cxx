@@ -7,6 +7,7 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/LightSources.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/GridAxes.h"
@@ -31,7 +32,9 @@ struct SolvedScene
   const Illumination& shining;
   int channels;
   int directionsPerFace;
-  bool muchThinner; ///< whether the grid is much thinner along one axis (IsMuchThinnerAlongOneAxis)
+  bool muchThinner;           ///< whether the grid is much thinner along one axis (IsMuchThinnerAlongOneAxis)
+  const BoundaryLight* faces; ///< as in OrdinatesScene; `shining` is without these faces
+  int facesDegree;            ///< as in OrdinatesScene
 };
 
 std::vector<std::string> Words(
@@ -53,7 +56,7 @@ std::vector<std::string> Words(
     say(!traits.scatters, left_out::NoScattering);
     say(!traits.absorbs, left_out::NoAbsorption);
     say(!traits.emits, left_out::NoEmission);
-    say(isDark(0) && isDark(1) && isDark(2), left_out::DarkOutside);
+    say(!scene.faces && isDark(0) && isDark(1) && isDark(2), left_out::DarkOutside);
     say(scene.shining.lights.empty() && far.peaks.empty(), left_out::NoLights);
     say(!Reflects(scene.shining), left_out::BlackFaces);
   }
@@ -83,10 +86,10 @@ LightField SolveChannels(
     const PhaseFunction function = FunctionOf(domain, scene.medium, c);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions),
       SeparableOf(function, far.directions, settings, scene.muchThinner || settings.seriesAfter > 0), function };
-    domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
+    domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings, scene.facesDegree); });
     const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
-      IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),
-      scene.traits.filled };
+      IncomingOf(far, scene.shining, c), scene.faces, scene.facesDegree, FaceAlbedoOf(scene.shining, c),
+      UncollidedOf(scene.shining, c), scene.traits.filled };
     const Monitor part = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
     const OrdinatesResult found = IsPublished(settings)
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
@@ -108,6 +111,66 @@ LightField SolveChannels(
   }
   return light;
 }
+
+/// Light of faces along rays of its own until its first collision (LightSources::FineBoundary), scattered in angular
+/// moments up to the degree of the terms of the phase function, or that which the directions resolve. Only if the terms
+/// are spherical harmonics: the light is then scattered as if it were swept.
+class LightOfFaces
+{
+public:
+  /// Collective. @param problem  must outlive this
+  LightOfFaces(const PropagationProblem& problem, const OrdinatesSettings& settings)
+    : Layout{ problem.TheGrid(), problem.Channels(), true }
+  {
+    const PropagationSettings& how = problem.Settings();
+    if (IsPublished(settings) || settings.scattering != OrdinatesScattering::SphericalHarmonics ||
+      settings.spiralDirections > 0 || settings.terms > 6 * how.directionsPerFace)
+    {
+      return;
+    }
+    const DirectionSet set = DirectionsForVoxels(how.directionsPerFace, problem.Whole().spacing);
+    const UncollidedDirections finer = UncollidedDirectionsFor(problem, set, IterationScheme::SourceIteration);
+    if (finer.perFace == 0)
+    {
+      return;
+    }
+    this->MomentsDegree =
+      DegreeOf(problem, MostDegree(EquiangularDirections(how.directionsPerFace), DegreeOfTerm(settings.terms - 1)));
+    problem.TheDomain().Collective([&] {
+      this->Usual.emplace(problem.Whole(), how, set, RayStarts::Middle);
+      this->Sources.emplace(problem, false, this->Layout, *this->Usual, finer);
+    });
+  }
+
+  const BoundaryLight* Boundary() const { return this->Sources ? this->Sources->FineBoundary.get() : nullptr; }
+  int Degree() const { return this->Boundary() ? this->MomentsDegree : -1; } ///< OrdinatesScene::facesDegree
+
+private:
+  /// Largest moment of the phase function without its peak that hardly changes the light.
+  static constexpr double Negligible = 0.02;
+
+  /// Highest degree, 1 to `most`, of which the phase function of any channel, without the peak beyond `most`
+  /// (numerics.md, Eq. (D6)), has a moment.
+  static int DegreeOf(const PropagationProblem& problem, int most)
+  {
+    int degree = std::min(1, most);
+    for (int c = 0; c < problem.Channels(); ++c)
+    {
+      const std::vector<double> moments = FunctionOf(problem.TheDomain(), problem.TheMedium(), c).Moments(most + 1);
+      const double peak = std::max(moments[most + 1], 0.0);
+      for (int l = 0; l <= most; ++l)
+      {
+        degree = std::abs(moments[l] - peak) > Negligible * (1.0 - peak) ? std::max(degree, l) : degree;
+      }
+    }
+    return static_cast<int>(problem.TheDomain().Max(degree));
+  }
+
+  const VolumeLayout Layout;
+  int MomentsDegree = 0;
+  std::optional<SweptDirections> Usual;
+  std::optional<LightSources> Sources;
+};
 
 /// Checks conditions that PropagationProblem does not check. Collective.
 void CheckOrdinates(const Domain& domain, const Medium& medium, const Illumination& illumination,
@@ -154,9 +217,11 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   }
   Illumination shining = problem.Shining();
   shining.uncollided = UncollidedKnown(domain, shining.uncollided);
+  const LightOfFaces faces(problem, settings);
+  shining.faces = faces.Boundary() ? std::array<Rgb, 6>() : shining.faces;
   LightField light = SolveChannels(device,
     { problem.TheDomain(), problem.TheMedium(), problem.Traits(), shining, problem.Channels(),
-      problem.Settings().directionsPerFace, problem.IsMuchThinner() },
+      problem.Settings().directionsPerFace, problem.IsMuchThinner(), faces.Boundary(), faces.Degree() },
     settings, monitor);
   if (kept)
   {

@@ -5,6 +5,7 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -204,10 +205,14 @@ std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thic
   return doubts;
 }
 
-void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+void CheckMemory(
+  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, int facesDegree)
 {
-  const std::size_t bytes =
-    IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
+  const int functions = (facesDegree + 1) * (facesDegree + 1);
+  const std::size_t moments = functions > 0 ? VolumeLayout{ grid, 1, true }.MomentFloats(functions) : 0;
+  const std::size_t bytes = sizeof(float) * moments +
+    (IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings)
+                           : BytesOfSweptOrders(grid, angles, settings));
   CheckMemory(device, angles.phase.DirectionCount(), bytes,
     sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount()));
 }
@@ -286,13 +291,14 @@ void TakeChannel(LightField& light, const OrdinatesResult& found, int channel)
   AddRows(light.convergence, found.convergence, channel == 0);
 }
 
-void DescribeLight(LightField& light, const Device& device, const FarLight& far)
+void DescribeLight(LightField& light, const Device& device, const FarLight& far, const BoundaryLight* faces)
 {
   light.scatteredRadiance.resize(light.fluence.size());
   std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.halfRangeFlux.fill(HalfRangeFlux({ 0, false, far.directions }));
+  light.halfRangeFlux.fill(HalfRangeFlux(faces ? faces->Along().Set() : DirectionSet{ 0, false, far.directions }));
+  light.uncollidedDirections = faces ? faces->Along().Set().PerFace() : 0;
   light.device = device.Name();
 }
 

@@ -12,6 +12,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
@@ -33,7 +34,10 @@ struct OrdinatesScene
   /// Lamps of the scene and parallel beams that represent peaks of the environment, with the power of this channel in
   /// all three components.
   std::vector<Light> lamps;
-  IncomingRadiance incoming;          ///< boundary source of sweeps; empty: no light is incident
+  IncomingRadiance incoming; ///< boundary source of sweeps; empty: no light is incident
+  /// Light of faces along rays of its own until its first collision; null: it is part of `incoming`.
+  const BoundaryLight* faces = nullptr;
+  int facesDegree = -1;               ///< degree of the angular moments in which `faces` are scattered
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
   UncollidedImage uncollided;         ///< uncollided light of this channel, given by another solver
   VoxelBox filled;                    ///< box of this rank's voxels that contains all of the medium, in all channels
@@ -121,8 +125,10 @@ SeparablePhaseFunction SeparableOf(const PhaseFunction& function, const std::vec
   const OrdinatesSettings& settings, bool nowhereNegative);
 
 /// Checks that the solve fits the device.
+/// @param facesDegree  OrdinatesScene::facesDegree; -1: no light of faces has rays of its own
 /// @throws DeviceError if it does not; the message states the memory needed
-void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+void CheckMemory(
+  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, int facesDegree);
 /// @param bytes, radiance  bytes of device memory of the whole solve, and of its largest array
 void CheckMemory(Device& device, int directions, std::size_t bytes, std::size_t radiance);
 
@@ -138,8 +144,8 @@ std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int
 void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 
 /// Sets in-scattered radiance, half-range flux and the name of the device in `light`, from its fluence and the
-/// directions; `light` is in the units of the solver.
-void DescribeLight(LightField& light, const Device& device, const FarLight& far);
+/// directions, those of `faces` if not null; `light` is in the units of the solver.
+void DescribeLight(LightField& light, const Device& device, const FarLight& far, const BoundaryLight* faces);
 
 /// Checks convergence and, except for the published scheme, the energy balance of `light` (Convergence.h). Collective.
 /// @param medium  of this rank's block, in the units of the solver

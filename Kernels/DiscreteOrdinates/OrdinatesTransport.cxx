@@ -207,7 +207,7 @@ void OrdinatesTransport::Spread(int c, const Buffer<float>* source)
     cl::Kernel spread = this->Kernel("spread_moments");
     With(spread, this->Places(), cl_int(c), cl_int(this->Request.angular->Beams()),
       cl_ulong(this->Parts.Layout.Stride()), *source, this->Values, this->Radiance,
-      cl_ulong(OrdinateStride(this->Voxels)));
+      cl_ulong(OrdinateStride(this->Voxels)), cl_int(0));
     Launch(this->Parts.TheDevice, spread, cl::NDRange(this->Voxels, this->Groups.Count()));
   }
 }

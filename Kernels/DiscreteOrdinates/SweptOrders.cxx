@@ -133,11 +133,11 @@ private:
 
   const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
 
-  /// Computes uncollided light and its first-collision source. Incident light and emission are swept; light of lamps is
-  /// computed along separate rays.
+  /// Computes uncollided light and its first-collision source. Incident light and emission are swept; light of faces
+  /// and lamps is computed along separate rays.
   void FirstOrder(const Monitor& monitor)
   {
-    const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
+    const bool swept = this->Scene.incoming || this->Scene.faces || this->Arrays.Emits() || !this->Settings.leaveOut;
     this->Scene.domain.Collective([&] { this->Radiance.Fill(0.0f); });
     if (this->Arrays.Emits())
     {
@@ -223,7 +223,7 @@ private:
     if (!shines && this->Scene.domain.IsSerial())
     {
       const double lit = static_cast<UpwindSweep&>(*this->Sweep).LitPart(incoming);
-      if (lit < 1.0)
+      if (lit < 1.0 && !this->Scene.faces)
       {
         this->Result.leftOut.push_back(left_out::DarkDirections(lit));
       }
@@ -236,6 +236,10 @@ private:
     this->Radiance.Swap(this->Source.Size() > 0 && !this->Record.All().empty() ? this->Source : this->Radiance);
     const bool isFirst = this->Record.All().empty(), within = this->OmitsSlabs && !isFirst;
     const FacePowers powers = this->SweepOrder(incoming, within, monitor);
+    if (isFirst)
+    {
+      this->Arrays.AddFaces(this->Radiance, this->Settings.periodic, this->Result.ledger, monitor);
+    }
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);

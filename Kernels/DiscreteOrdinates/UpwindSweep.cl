@@ -336,14 +336,15 @@ __kernel void gather_sums(const __global float4* sums, const __global int* up, i
 // Computes the source along each direction from its angular moments and the sources of beams (BeamScattering.h).
 //   source  moments, W / (length^3 sr) (MomentPlacesShared.h)
 //   values  [group][function, then beam][8]: values of the angular functions and of the beams' distributions
-//   radiance  receives the source, [group][voxel][8]
+//   radiance  receives the source, [group][voxel][8]; if `adds`, the source is added to it
 __kernel void spread_moments(MomentPlaces places, int channel, int beams, ulong stride, const __global float* source,
-  const __global float* values, __global float* radiance, ulong groupStride)
+  const __global float* values, __global float* radiance, ulong groupStride, int adds)
 {
   const ulong i = get_global_id(0);
   const ulong group = get_global_id(1), line = i / places.sizeX, x = i % places.sizeX;
   const __global float8* of = (const __global float8*)values + group * (places.functions + beams);
-  float8 sum = of[0] * source[channel * stride + i];
+  __global float8* to = (__global float8*)radiance + group * groupStride + i;
+  float8 sum = of[0] * source[channel * stride + i] + (adds ? *to : (float8)0.0f);
   for (int function = 1; function < places.functions; ++function)
   {
     sum += of[function] * source[MOMENT_PLACE(places, function, channel, line, x)];
@@ -352,7 +353,7 @@ __kernel void spread_moments(MomentPlaces places, int channel, int beams, ulong 
   {
     sum += of[places.functions + beam] * source[places.beams + (beam * places.channels + channel) * stride + i];
   }
-  ((__global float8*)radiance)[group * groupStride + i] = sum;
+  *to = sum;
 }
 
 // Adds the angular moments of the radiance to those of the path integrals, except for the first moment, which

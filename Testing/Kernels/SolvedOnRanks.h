@@ -328,7 +328,7 @@ struct OrdinatesSolver
   using Settings = tyndall::OrdinatesSettings;
   static constexpr double Tolerance = 1e-6;
   static constexpr bool SameSteps = true;
-  static constexpr std::size_t LeastMemory = 140000;
+  static constexpr std::size_t LeastMemory = 150000;
   static Settings Plain(int orders = 0)
   {
     Settings settings;
