@@ -30,7 +30,7 @@ namespace
 /// wraps in the first sweep, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
-/// Number of scattering orders up to which anisotropic scattering is not accelerated. Acceleration represents
+/// Number of scattering orders up to which anisotropic scattering in slabs is not accelerated. Acceleration represents
 /// scattering by angular moments, which is less accurate than scattering from each direction into all directions.
 constexpr double FewOrders = 100.0;
 
@@ -393,7 +393,8 @@ struct SweptProblem
     }
     const PropagationProblem& own = this->inMoments ? *this->inMoments : even;
     this->how = even.HasGivenLight() ? IterationScheme::SourceIteration : ChooseIterationScheme(own);
-    const bool byDirections = this->inMoments && (!this->IsAccelerated() || OrdersNeeded(own) < FewOrders);
+    const bool byDirections =
+      this->inMoments && (!this->IsAccelerated() || (own.IsSlab() && OrdersNeeded(own) < FewOrders));
     this->problem = byDirections ? nullptr : &own;
   }
   SweptProblem(const SweptProblem&) = delete;
