@@ -13,8 +13,11 @@
 #include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Published/PublishedModel.h"
+#include "Numerics/Legendre.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -95,13 +98,17 @@ LightField SolveChannels(
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
       : SolveSweptOrders(device, ofChannel, angles, settings, part);
     domain.Collective([&] { TakeChannel(light, found, c); });
+    std::vector<std::string> words = found.leftOut;
     if (c == 0)
     {
-      light.leftOut = Words(scene, far, angles.phase.Terms() == 1, settings);
-      light.leftOut.insert(light.leftOut.end(), found.leftOut.begin(), found.leftOut.end());
+      const std::vector<std::string> ofAll = Words(scene, far, angles.phase.Terms() == 1, settings);
+      words.insert(words.begin(), ofAll.begin(), ofAll.end());
     }
+    std::copy_if(words.begin(), words.end(), std::back_inserter(light.leftOut), [&](const std::string& word) {
+      return std::find(light.leftOut.begin(), light.leftOut.end(), word) == light.leftOut.end();
+    });
   }
-  DescribeLight(light, device, far);
+  DescribeLight(light, device, far, scene.faces);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));
   Judge(settings, domain, scene.medium, light);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&

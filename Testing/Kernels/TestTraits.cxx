@@ -404,6 +404,21 @@ TEST_F(TraitsOfOrdinates, EmptyVoxelsAreOnlySummed)
   }
 }
 
+/// The first channel scatters everywhere, and leaves out nothing.
+TEST_F(TraitsOfOrdinates, AreThoseOfAllChannels)
+{
+  Scene scene = Cloudlets(0);
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  scene.sigma_s = Coloured(scene.sigma_s, { 1.0, 0.5, 0.1 });
+  for (std::size_t i = 0; i < scene.sigma_s.size(); i += 3)
+  {
+    scene.sigma_s[i] = 0.2f;
+  }
+  OrdinatesSettings settings;
+  settings.maximumOrders = 3;
+  this->ExpectLeftOut(scene, settings, "scattering in empty voxels");
+}
+
 TEST_F(TraitsOfOrdinates, DarkDirectionsAreNotSwept)
 {
   Scene scene = Cloud(), forward = Cloud();
