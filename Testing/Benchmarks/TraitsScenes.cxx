@@ -138,15 +138,23 @@ TraitCase AsPublished(Device& device, const std::string& name, const std::array<
           } };
 }
 
-TraitCase Ordinates(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+/// @param accelerated  whether the cloud is ten times as dense, and its scattering orders are accelerated; false: eight
+///   orders
+TraitCase Ordinates(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change,
+  bool accelerated = false)
 {
   const auto scene = std::make_shared<TraitScene>(size);
   change(*scene);
-  return { name, "DiscreteOrdinates", scene->GridName(), Everything,
-    [&device, scene](bool leaveOut) {
+  for (std::vector<float>* values : { &scene->sigma_a, &scene->sigma_s })
+  {
+    std::transform(values->begin(), values->end(), values->begin(),
+      [&](float value) { return accelerated ? 10.0f * value : value; });
+  }
+  return { name, accelerated ? "DiscreteOrdinates, accelerated" : "DiscreteOrdinates", scene->GridName(), Everything,
+    [&device, scene, accelerated](bool leaveOut) {
       OrdinatesSettings settings;
       settings.directionsPerFace = 9;
-      settings.maximumOrders = 8;
+      settings.maximumOrders = accelerated ? 0 : 8;
       settings.leaveOut = leaveOut;
       return SolveDiscreteOrdinates(device, Domain(scene->medium.grid), scene->medium, scene->light, settings).fluence;
     } };
@@ -253,6 +261,10 @@ std::vector<TraitCase> VoxelCases(Device& device, int edge)
     Ordinates(device, "empty slabs, 1/2 filled, g 0.6", cube, ahead),
     Ordinates(device, "empty slabs, 1/8 filled", cube, empty(0.5)),
     Ordinates(device, "empty slabs, 1/64 filled", cube, empty(0.25)),
+    Ordinates(device, "grey", cube, grey, true),
+    Ordinates(device, "one colour of light", cube, oneColour, true),
+    Ordinates(device, "empty slabs, 1/2 filled, g 0.6", cube, ahead, true),
+    Ordinates(device, "empty slabs, 1/8 filled", cube, empty(0.5), true),
     Lattice(device, "grey", cube, grey),
     Lattice(device, "one colour of light", cube, oneColour),
     Lattice(device, "dark channels, red light", cube, red),
