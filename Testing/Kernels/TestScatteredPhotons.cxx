@@ -7,7 +7,7 @@
 
 #include "Numerics/Constants.h"
 #include "Photons/Marching/PhotonMarcher.h"
-#include "Photons/Scattering/ScatteringForecast.h"
+#include "Photons/Scattering/PhotonScattering.h"
 #include "Reference/CubeReference.h"
 #include "Reference/ReferenceTable.h"
 #include "Reference/SlabReference.h"

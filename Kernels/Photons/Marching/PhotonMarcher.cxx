@@ -12,7 +12,6 @@
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Scattering/PhotonScattering.h"
-#include "Photons/Scattering/ScatteringForecast.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -61,7 +61,7 @@ public:
   ///   voxel's counter; DeviceError if the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
 
-  /// Warning that a march of these photons takes very many scatterings (ScatteringForecast.h); empty if it does not, or
+  /// Warning that a march of these photons takes very many scatterings (PhotonScattering.h); empty if it does not, or
   /// photons are not followed beyond their first collision.
   /// @param share  this rank's photons, as in March
   std::string Warning(const std::vector<Photon>& share) const;
