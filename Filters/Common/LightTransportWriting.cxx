@@ -257,7 +257,7 @@ void WriteFacts(const LightField& light, vtkImageData* output)
     AddFact(output, SurfaceErrorFact, { light.surfaceError.begin(), light.surfaceError.end() },
       static_cast<int>(SurfaceCosines.size()) * channels);
   }
-  if (light.errorLength > 0.0 && !light.fluenceError.empty())
+  if (light.errorLength > 0.0)
   {
     AddFact(output, ErrorLengthFact, std::vector<double>{ light.errorLength }, 1);
   }
