@@ -12,10 +12,10 @@ namespace tyndall
 {
 namespace
 {
-/// upper bound of the chord of a direction through a voxel, in voxel edges, for directions along which nothing varies
+/// Upper bound of the chord of a direction through a voxel, in voxel edges, for directions along which nothing varies
 constexpr double LongestChord = 1e6;
-/// Optical length of a voxel's longest edge up to which sweeps by diamond differences have mean chords: beside opaque
-/// voxels, diamonds overshoot in voxels that are nearly empty.
+/// Optical length of a voxel's longest edge up to which a sweep attenuates light along the mean chord (numerics.md, Eq.
+/// (D10)) instead of by diamond differences, which overshoot in nearly empty voxels beside opaque ones.
 constexpr double ThinForDiamonds = 0.01;
 
 std::size_t FaceVoxels(const Grid& grid, int axis)

@@ -43,7 +43,7 @@ public:
   CoarseScene(const CoarseScene&) = delete;
   CoarseScene& operator=(const CoarseScene&) = delete;
 
-  /// This rank's coarse voxels; the medium and light by voxel of a rank without coarse voxels have no values.
+  /// This rank's coarse voxels. On a rank without coarse voxels the arrays of medium and light are empty.
   SceneBlock Scene() const { return { this->TheDomain, this->Averaged, this->Light, this->Index }; }
 
 private:

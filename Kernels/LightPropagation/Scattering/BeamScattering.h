@@ -12,9 +12,9 @@ namespace tyndall
 {
 /// First-collision source of a parallel beam along each direction of a quadrature, minus its truncated angular moments
 /// in `basis`, in units of the mean of the scattered light over all directions (numerics.md, Eqs. (42b), (42c)).
-/// Truncated moments of a forward peak are negative sideways; the phase function without its peak is not. The peak
-/// removed is the part of the phase function above some level around the forward direction, with as much power as
-/// delta-M treats as unscattered.
+/// The source is that of the phase function without its forward peak: a truncated series of moments with the peak would
+/// be negative sideways. The peak is the part of the phase function above some level around the forward direction, with
+/// as much power as delta-M treats as unscattered.
 ///
 /// All moments of the result in `basis` are zero to rounding, so the moments of the scattered light do not change.
 /// @param truncated  phase function as truncated by delta-M

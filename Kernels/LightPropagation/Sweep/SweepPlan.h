@@ -104,8 +104,8 @@ struct SweepPlan : SweepDescription
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;
   /// Lowers PlaneInfo::thin, the extinction below which a voxel counts as thin. This is necessary for rays that
-  /// continue around a periodic axis beyond the planes of their pattern, because their segments may be longer there.
-  /// Call before OwnLight().
+  /// continue around a periodic axis, because their segments in voxels may be longer than in the first lap. Call before
+  /// OwnLight().
   void LetRaysGoOn();
 
 private:

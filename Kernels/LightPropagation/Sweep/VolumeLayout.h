@@ -116,7 +116,6 @@ Buffer<float> PlanarOnDevice(
   return values;
 }
 
-/// Values of a planar array ([channel][voxel]) times `scale`, interleaved: the values of each voxel (channels times
-/// components) are adjacent.
+/// Values of a planar array ([channel][voxel]), multiplied by `scale` and reordered as [voxel][channel].
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

@@ -357,8 +357,8 @@ void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& pi
   }
 }
 
-/// Renders this rank's contribution to the picture. For straight rays these are the pixels of its block, otherwise the
-/// pixels of the rays that end on this rank. Collective.
+/// Renders this rank's contribution to the picture. For straight rays the contribution consists of the pixels that show
+/// the rank's block of voxels, otherwise of the pixels of rays that end on this rank. Collective.
 /// @param size  width and height of the picture, pixels
 Picture PictureInBlocks::CastOwn(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor)
 {

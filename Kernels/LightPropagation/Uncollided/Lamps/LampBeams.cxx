@@ -76,7 +76,7 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
 }
 
 /// Voxel of the grid nearest to a beam's start, which decides which rank traces the beam first. An approximation
-/// suffices, because a rank always computes the first step of a beam that it receives.
+/// suffices: a rank computes the first step of a beam that it receives even if that starts in a neighbouring block.
 std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   const double begins[] = { row.startU + static_cast<double>(beam) * row.openU, row.startV };
