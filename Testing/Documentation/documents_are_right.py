@@ -3,7 +3,7 @@
 
     documents_are_right.py ROOT [LINES]
 
-ROOT is the repository. Looked at are README.md, CONTRIBUTING.md, CHANGELOG.md, Plugin/Documentation/*.md and Data/**/*.md:
+ROOT is the repository. Looked at are README.md, CONTRIBUTING.md, CHANGELOG.md, Plugin/*/*.md and Data/**/*.md:
  - a relative link or picture leads to a file of the repository, and what follows its # to a heading there;
  - every filter of Plugin/ServerManager/*.xml has a section in the reference, and every property a place in it;
  - a block of code under <!-- quoted: FILE --> holds lines of FILE, in their order;
@@ -19,7 +19,8 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Plugin/Documentation"))
 from make_help import anchor  # noqa: E402
 
-PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "Plugin/Documentation/*.md", "Data/**/*.md")
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "Plugin/Documentation/*.md", "Plugin/Packaging/*.md",
+         "Data/**/*.md")
 LINK = re.compile(r"\]\(([^()\s]+)\)|<img [^>]*src=\"([^\"]+)\"")
 
 
