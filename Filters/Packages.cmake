@@ -40,9 +40,19 @@ function (tyndall_package group package)
 endfunction ()
 
 if (TYNDALL_PLUGIN)
-  # Beside its executable Debian's ParaView reads paraview.conf: a list of plugins a line, seen from there.
-  file(WRITE "${CMAKE_BINARY_DIR}/paraview.conf" "../lib/${TYNDALL_PLUGIN_SUBDIRECTORY}/tyndall.plugins.xml\n")
-  install(FILES "${CMAKE_BINARY_DIR}/paraview.conf" DESTINATION "bin" COMPONENT "paraview_conf" EXCLUDE_FROM_ALL)
+  # What Debian's ParaView reads: on Debian 12 paraview.conf beside its executable, a list of plugins a line, seen from
+  # there; since Debian 13 the folder share/paraview/plugins, with a folder a plugin.
+  if (ParaView_VERSION VERSION_LESS 5.12)
+    set(listed "${CMAKE_BINARY_DIR}/paraview.conf")
+    set(listed_in "bin")
+    file(WRITE "${listed}" "../lib/${TYNDALL_PLUGIN_SUBDIRECTORY}/tyndall.plugins.xml\n")
+  else ()
+    set(listed "${CMAKE_BINARY_DIR}/share/Tyndall")
+    set(listed_in "share/paraview/plugins")
+    file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/share")
+    file(CREATE_LINK "../../../lib/${TYNDALL_PLUGIN_SUBDIRECTORY}/Tyndall" "${listed}" SYMBOLIC)
+  endif ()
+  install(FILES "${listed}" DESTINATION "${listed_in}" COMPONENT "paraview_conf" EXCLUDE_FROM_ALL)
   tyndall_package(plugin tyndall-paraview
     SUMMARY "The plugin for ParaView, with scenes to open at once, and the Python package\ntyndall for ParaView's VTK."
     DEPENDS "paraview, python3-paraview, ${python}, ${opencl}"
