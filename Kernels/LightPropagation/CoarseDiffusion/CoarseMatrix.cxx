@@ -85,11 +85,11 @@ double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
 /// sigma_t), light would diffuse too fast in thin cells over distances below a mean free path.
 std::vector<double> Diffusing(const Level& level)
 {
-  if (level.sigmaT.size() == 1)
-  {
-    return level.sigmaT;
-  }
   std::vector<double> sigma = level.sigmaT;
+  if (sigma.size() == 1)
+  {
+    return sigma;
+  }
   std::vector<double> around; // result of this function for the next coarser grid; computed when first needed
   Level coarser;
   ForGridVoxels(level.size, [&](std::size_t, int x, int y, int z) {
