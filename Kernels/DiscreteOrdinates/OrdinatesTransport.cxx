@@ -388,7 +388,7 @@ struct SweptProblem
     if (!even.IsIsotropic())
     {
       PropagationSettings as = AsPropagation(settings);
-      as.angularDegree = static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1;
+      as.angularDegree = std::min(static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1, HighestAngularDegree);
       this->inMoments.emplace(scene.domain, scene.medium, scene.illumination, as, MemoryOf(device));
     }
     const PropagationProblem& own = this->inMoments ? *this->inMoments : even;

@@ -45,7 +45,7 @@ void Check(const PropagationSettings& settings)
     throw InvalidInput("EmissionError is " + Text("%g", settings.emissionError) +
       "; it must not be negative: 0 is for no rays of their own, 0.02 is usual, 0.005 accurate.");
   }
-  if (settings.angularDegree < -1 || settings.angularDegree > 15)
+  if (settings.angularDegree < -1 || settings.angularDegree > HighestAngularDegree)
   {
     throw InvalidInput("AngularDegree is " + std::to_string(settings.angularDegree) +
       "; it must be from 0 (isotropic by the similarity relation) to 15, or -1: as the phase function asks for.");

@@ -24,6 +24,8 @@ enum class PropagationAcceleration
   None       ///< source iteration, as published
 };
 
+constexpr int HighestAngularDegree = 15; ///< largest PropagationSettings::angularDegree
+
 /// Settings of the light propagation solvers; the names are those of the filter's properties.
 struct PropagationSettings
 {

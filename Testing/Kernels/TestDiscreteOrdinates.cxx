@@ -502,6 +502,20 @@ TEST_F(DiscreteOrdinates, FillAFurnaceByTheTermsOfAPreview)
   }
 }
 
+// Accelerated solves are in angular moments, of which there are fewer: an error named a property of the maps.
+TEST_F(DiscreteOrdinates, TakeMoreTermsThanThereAreMoments)
+{
+  LitMedium scene({ 4, 4, 4 }, 0.0f, 300.0f);
+  scene.ShineFromEverywhere(1.0);
+  scene.ScatterWith(0.9);
+  scene.how.directionsPerFace = 64;
+  scene.how.terms = 324;
+  for (const float fluence : scene.SolveOrdinates(this->GetDevice()).fluence)
+  {
+    EXPECT_NEAR(fluence / (4.0 * Pi), 1.0, 1e-2);
+  }
+}
+
 class PublishedOrdinates : public DiscreteOrdinates
 {
 protected:
