@@ -121,6 +121,14 @@ void CompareRuns(
   }
 }
 
+/// Whether all errors say the same, as those of filters that refuse the same medium one after the other.
+bool AreAlike(const std::vector<std::string>& errors)
+{
+  const auto words = [](const std::string& error) { return error.substr(std::min(error.find("): "), error.size())); };
+  return std::all_of(
+    errors.begin(), errors.end(), [&](const std::string& error) { return words(error) == words(errors[0]); });
+}
+
 /// Runs a cell and prints its line.
 /// @return its verdict
 std::string RunCell(const Cell& cell)
@@ -132,7 +140,7 @@ std::string RunCell(const Cell& cell)
   line.Add("seconds", outcome.seconds);
   if (!outcome.errors.empty())
   {
-    const bool clear = outcome.errors.size() == 1 && outcome.empty && MayRefuse(solver, asked, outcome.errors[0]);
+    const bool clear = AreAlike(outcome.errors) && outcome.empty && MayRefuse(solver, asked, outcome.errors[0]);
     const std::string verdict = clear ? "refused" : "WRONG";
     line.Add("verdict", verdict).Add("errors", static_cast<double>(outcome.errors.size()));
     for (std::size_t i = 0; i < outcome.errors.size(); ++i)
