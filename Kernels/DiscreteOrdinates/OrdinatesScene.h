@@ -35,7 +35,8 @@ struct OrdinatesScene
   /// all three components.
   std::vector<Light> lamps;
   IncomingRadiance incoming; ///< boundary source of sweeps; empty: no light is incident
-  /// Light of faces along rays of its own until its first collision; null: it is part of `incoming`.
+  /// Light that enters through faces and is traced along separate rays until its first collision; null: this light is
+  /// part of `incoming`.
   const BoundaryLight* faces = nullptr;
   int facesDegree = -1;               ///< degree of the angular moments in which `faces` are scattered
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components

@@ -14,9 +14,9 @@
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Fields of a result: first CARRIED smoothed quantities, then the two fields with these indices. The source level
-// (BLENDED) is the pyramid level from which the light is taken; it is fractional where levels are blended. SQUARED is
-// the squared error.
+// A result consists of the smoothed quantities, CARRIED in number, and two more fields. The field BLENDED is the pyramid
+// level from which the light is taken; it is fractional where levels are blended. The field SQUARED is the squared
+// error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)

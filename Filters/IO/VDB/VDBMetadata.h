@@ -24,8 +24,9 @@ void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb:
 /// that describe the file from which the grid was read.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
-/// Adds field data that define a medium in addition to its cell arrays (`g`, `phase_function` and its parameters). In a
-/// file they are metadata of the same names with the prefix `medium_`; rows of a table are stored as text.
+/// Adds the field data `g`, `phase_function` and its parameters, which define a medium in addition to its cell arrays.
+/// In a file they are metadata of the same names with the prefix `medium_`; rows of a tabulated phase function are stored
+/// as text.
 void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
 void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }

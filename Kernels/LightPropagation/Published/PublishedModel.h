@@ -38,7 +38,8 @@ public:
   int Channels() const { return this->ChannelCount; }
   const DirectionSet& Directions() const { return this->Set; }
 
-  /// Incident radiance, W / (length^2 sr), along `direction` through the face across `axis` in order 0.
+  /// Incident radiance, W / (length^2 sr), along `direction` through the upstream face normal to
+  /// `axis`, before the first scattering.
   const Rgb& Boundary(int direction, int axis) const { return this->BoundaryRadiances[direction][axis]; }
 
   /// Directions for which the scattered radiance I is stored: a single (0, 0, 0) for the mean over all directions, or
@@ -67,7 +68,7 @@ public:
   /// |mean| of this light is assigned to the nearest direction of the quadrature; the remainder is isotropic. The net
   /// flux is exact.
   std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
-  /// Source U of a source direction, divided by sigma_s.
+  /// Scattering source U along one of the directions for which it is stored, divided by sigma_s.
   Part Source(int sourceDirection) const;
   /// Scattered radiance I of a stored direction, divided by sigma_s.
   Part ScatteredRadiance(int storedDirection) const;

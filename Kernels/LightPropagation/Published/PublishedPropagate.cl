@@ -101,7 +101,8 @@ inline real cross_voxel(real radiance, real sigma_t, real source, float length)
   const real gone = extinguished(tau, &left);
   return SOURCE ? multiply_add(radiance, left, source * depth(gone, tau, length)) : radiance * left;
 }
-// Deposit of a ray in a voxel, Eq. (6) divided by sigma_s (numerics.md, Eq. (10)), length W / (length^2 sr).
+// Deposit of a ray in a voxel, Eq. (6) divided by sigma_s (numerics.md, Eq. (10)): path integral of radiance, in
+// W / (length sr).
 inline real deposit(real radiance, real sigma_s, float length)
 {
   const real tau = sigma_s * length;

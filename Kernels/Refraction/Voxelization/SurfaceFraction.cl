@@ -123,8 +123,8 @@ inline int2 correction_at(
   return (int2)(index, side * convert_int_rte(scale * (float)twice));
 }
 
-// Corrects the volumes of a slab's voxels (the voxels that are processed at a time) by the crossings of one mesh. The
-// corrections of a voxel are summed.
+// Corrects the volume of the mesh within each voxel of a slab, the layers of voxels that are processed together, where
+// triangles of the mesh cross the voxel. The corrections of a voxel are summed.
 //   tiles          pieces of triangles, one per work-item, as in mark_crossings
 //   samples, bits, claimed, taken  as in mesh_samples
 //   orientation    1 if the mesh's triangles are counterclockwise as seen from outside, -1 if clockwise, 0 if triangles

@@ -103,8 +103,8 @@ std::vector<float> BlockCrossingOnGpu::Cross(const SweepVolume& volume, const st
   return this->SumsOfSides();
 }
 
-/// Creates the slices of a block in host memory. Their grid is the block, since the block's arrays hold no other
-/// voxels.
+/// Creates the slices of a block whose arrays are in host memory. The grid of the slices is that of the block, since
+/// these arrays have no other voxels.
 std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
 {
   if (!this->TheDevice.Streams())
