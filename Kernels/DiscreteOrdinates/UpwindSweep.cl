@@ -151,17 +151,74 @@ typedef struct
   const __global uchar* empty; // whether each block of OrdinateBlock voxels has no medium, if SweptLayers::skips
 } ordinate_arrays;
 
-// Stores the sums of fluence and net flux over the directions of a group, for voxel `voxel` of a block without medium,
-// [fluence, flux along x, y, z][voxel]. They replace the radiance of the block's first voxels.
-//   across  power that a radiance of 1 carries through the faces normal to x, y, z, W;  up: signs of the directions
-static inline void keep_sums(__global float* block, int voxel, real mean, real angle, const real* across,
+// Weights of a work-item's directions; the arrays of the same names are explained at sweep_layers.
+typedef struct
+{
+  real share[3], chord;
+  real chords[3]; // lengths of the mean chords from face to face along each axis
+  real across[3], angle;
+} ordinate_weights;
+
+static inline ordinate_weights weights_of(const ordinate_arrays* arrays, int group, int lane)
+{
+  ordinate_weights weights;
+  for (int a = 0; a < 3; ++a)
+  {
+    weights.share[a] = load_real((group * 4 + a) * 8 + lane, arrays->shares);
+    weights.chords[a] = 1.0f / fmax(weights.share[a], (real)1e-6f);
+    weights.across[a] = load_real((group * 4 + a) * 8 + lane, arrays->across);
+  }
+  weights.chord = load_real((group * 4 + 3) * 8 + lane, arrays->shares);
+  weights.angle = load_real((group * 4 + 3) * 8 + lane, arrays->across);
+  return weights;
+}
+
+// Mean over a voxel's faces of the radiance that enters through them.
+static inline real entering(const ordinate_weights* of, const real* in)
+{
+  return multiply_add(of->share[0], in[0], multiply_add(of->share[1], in[1], of->share[2] * in[2]));
+}
+
+// Crosses a voxel by weighted diamond differences or, if `diamonds` is 0, along the mean chord.
+//   source  W / (length^3 sr)
+//   in      radiance that enters through the faces normal to x, y, z;  out: receives the radiance that leaves
+// Returns the mean radiance.
+static inline real cross_ordinate(
+  const ordinate_weights* of, real sigma_t, real source, int diamonds, const real* in, real* out)
+{
+  const real tau = sigma_t * of->chord, gain = source * of->chord;
+  if (diamonds)
+  {
+    const real weight[3] = { reciprocal_weight(tau * of->chords[0]), reciprocal_weight(tau * of->chords[1]),
+      reciprocal_weight(tau * of->chords[2]) };
+    return cross_by_diamonds(tau, of->share, weight, gain, in, out);
+  }
+  real mean;
+  out[0] = out[1] = out[2] = cross_voxel(tau, entering(of, in), gain, &mean);
+  return mean;
+}
+
+// Sums over the work-item's directions: powers through the faces normal to x, y, z, of the light that enters or, if
+// `of_mean`, of the mean radiance; and fluence.
+static inline float4 sums_of(const ordinate_weights* of, const real* in, real mean, int of_mean)
+{
+  return (float4)(sum_of(of->across[0] * (of_mean ? mean : in[0])), sum_of(of->across[1] * (of_mean ? mean : in[1])),
+    sum_of(of->across[2] * (of_mean ? mean : in[2])), sum_of(of->angle * mean));
+}
+
+// Stores the sums of fluence and net flux over the directions of a group, for a voxel of a block without medium,
+// [fluence, flux along x, y, z][voxel of the block]. They replace the radiance of the block's first voxels.
+//   light  radiance of the group, [voxel][8];  up: signs of the directions
+static inline void keep_sums(__global float* light, ulong index, real mean, const ordinate_weights* of,
   const SweptLayers* layers, const __global int* up)
 {
-  block[voxel] = sum_of(angle * mean);
+  __global float* const block = light + index / OrdinateBlock * OrdinateBlock * 8;
+  const int voxel = index % OrdinateBlock;
+  block[voxel] = sum_of(of->angle * mean);
   for (int a = 0; a < 3 && layers->perArea[0] > 0.0f; ++a)
   {
     const float perArea = up[a] ? layers->perArea[a] : -layers->perArea[a];
-    block[(1 + a) * OrdinateBlock + voxel] = perArea * sum_of(across[a] * mean);
+    block[(1 + a) * OrdinateBlock + voxel] = perArea * sum_of(of->across[a] * mean);
   }
 }
 
@@ -185,27 +242,15 @@ static inline __attribute__((always_inline)) void sweep_layers(
   const ordinate_arrays* arrays, const SweptLayers* layers, const int mode)
 {
   const int nx = layers->size[0], ny = layers->size[1], nz = layers->size[2];
-  const int item = get_global_id(0);
-  const int group = item * REAL_WIDTH / 8;
-  const int lane = item * REAL_WIDTH % 8;
-  const real share_x = load_real((group * 4 + 0) * 8 + lane, arrays->shares);
-  const real share_y = load_real((group * 4 + 1) * 8 + lane, arrays->shares);
-  const real share_z = load_real((group * 4 + 2) * 8 + lane, arrays->shares);
-  const real chord = load_real((group * 4 + 3) * 8 + lane, arrays->shares);
-  const real across_x = load_real((group * 4 + 0) * 8 + lane, arrays->across);
-  const real across_y = load_real((group * 4 + 1) * 8 + lane, arrays->across);
-  const real across_z = load_real((group * 4 + 2) * 8 + lane, arrays->across);
-  const real angle = load_real((group * 4 + 3) * 8 + lane, arrays->across);
-  const real share[3] = { share_x, share_y, share_z }, across[3] = { across_x, across_y, across_z };
+  const int item = get_global_id(0), group = item * REAL_WIDTH / 8, lane = item * REAL_WIDTH % 8;
+  const ordinate_weights weights = weights_of(arrays, group, lane);
   const __global uchar* const empty = mode == ByDirection && REAL_WIDTH == 8 && layers->skips ? arrays->empty : 0;
-  const real chords[3] = { 1.0f / fmax(share_x, (real)1e-6f), 1.0f / fmax(share_y, (real)1e-6f),
-    1.0f / fmax(share_z, (real)1e-6f) }; // mean chords from face to face along each axis
-  const int up_x = arrays->up[3 * group], up_y = arrays->up[3 * group + 1], up_z = arrays->up[3 * group + 2];
+  const __global int* const up = arrays->up + 3 * group;
   const __global float* sigma_t = arrays->sigma_t + layers->firstT;
   const int beyond = layers->part == SweepsBeyondBox;
-  const int4 x_range = swept_range(up_x, beyond, layers->first[0], layers->last[0], nx);
-  const int4 y_range = swept_range(up_y, beyond, layers->first[1], layers->last[1], ny);
-  const int4 z_range = swept_range(up_z, beyond, layers->first[2], layers->last[2], nz);
+  const int4 x_range = swept_range(up[0], beyond, layers->first[0], layers->last[0], nx);
+  const int4 y_range = swept_range(up[1], beyond, layers->first[1], layers->last[1], ny);
+  const int4 z_range = swept_range(up[2], beyond, layers->first[2], layers->last[2], nz);
   for (int layer = layers->begin; layer < min(layers->end, z_range.w); ++layer)
   {
     const int k = z_range.x + z_range.y * layer;
@@ -227,43 +272,27 @@ static inline __attribute__((always_inline)) void sweep_layers(
       for (; column < x_range.w; ++column)
       {
         const int i = x_range.x + x_range.y * column;
-        const real from_y = load_real(i * 8, along_y);
-        const real from_z = load_real(i * 8, along_z);
+        const real in[3] = { from_x, load_real(i * 8, along_y), load_real(i * 8, along_z) };
         if (empty && empty[(first + i) / OrdinateBlock])
         {
-          from_x = multiply_add(share_x, from_x, multiply_add(share_y, from_y, share_z * from_z));
-          keep_sums(arrays->light + (group * layers->stride + (first + i) / OrdinateBlock * OrdinateBlock) * 8,
-            (first + i) % OrdinateBlock, from_x, angle, across, layers, arrays->up + 3 * group);
+          from_x = entering(&weights, in);
+          keep_sums(arrays->light + group * layers->stride * 8, first + i, from_x, &weights, layers, up);
           store_real(from_x, i * 8, along_y);
           store_real(from_x, i * 8, along_z);
           continue;
         }
         real source = mode & ByDirection ? load_real(i * 8, cells) : (real)even[i];
         source = mode & InSums ? source : source * (real)arrays->scale[first + i];
-        const real tau = (real)sigma_t[first + i] * chord;
-        const real in[3] = { from_x, from_y, from_z };
-        real mean, out[3];
-        if (mode & ByDiamonds && sigma_t[first + i] > layers->thin)
-        {
-          const real weight[3] = { reciprocal_weight(tau * chords[0]), reciprocal_weight(tau * chords[1]),
-            reciprocal_weight(tau * chords[2]) };
-          mean = cross_by_diamonds(tau, share, weight, source * chord, in, out);
-        }
-        else
-        {
-          const real aside = multiply_add(share_y, from_y, share_z * from_z);
-          out[0] = out[1] = out[2] = cross_voxel(tau, multiply_add(share_x, from_x, aside), source * chord, &mean);
-        }
+        const int diamonds = mode & ByDiamonds && sigma_t[first + i] > layers->thin;
+        real out[3];
+        const real mean = cross_ordinate(&weights, (real)sigma_t[first + i], source, diamonds, in, out);
         if (mode & ByDirection)
         {
           store_real(mean, i * 8, cells);
         }
         if (mode & InSums)
         {
-          const int of_mean = layers->ofMean;
-          arrays->sums[group * layers->stride + first + i] =
-            (float4)(sum_of(across_x * (of_mean ? mean : from_x)), sum_of(across_y * (of_mean ? mean : from_y)),
-              sum_of(across_z * (of_mean ? mean : from_z)), sum_of(angle * mean));
+          arrays->sums[group * layers->stride + first + i] = sums_of(&weights, in, mean, layers->ofMean);
         }
         store_real(out[1], i * 8, along_y);
         store_real(out[2], i * 8, along_z);
