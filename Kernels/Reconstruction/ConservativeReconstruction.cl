@@ -14,7 +14,7 @@
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// A result consists of the smoothed quantities, CARRIED in number, and two more fields. The field BLENDED is the pyramid
+// A result consists of CARRIED fields of smoothed quantities and two more fields. The field BLENDED is the pyramid
 // level from which the light is taken; it is fractional where levels are blended. The field SQUARED is the squared
 // error.
 #define BLENDED CARRIED

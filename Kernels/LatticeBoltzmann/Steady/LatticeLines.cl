@@ -222,8 +222,8 @@ typedef struct
 } Cut;
 
 // State of the upward pass at the last voxel that it has reached: place and index of this voxel, and number of voxels
-// so far. If the line is cut below its first voxel, light that is sent up across the cut arrives here in part: `part` is
-// the fraction of it that this voxel sends on. `cut` is the light that the first voxel sends down to the cut.
+// so far. If the line is cut below its first voxel, light that is sent up across the cut arrives here in part: `part`
+// is the fraction of it that this voxel sends on. `cut` is the light that the first voxel sends down to the cut.
 typedef struct
 {
   Place place;
