@@ -25,8 +25,8 @@ void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb:
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
 /// Adds the field data `g`, `phase_function` and its parameters, which define a medium in addition to its cell arrays.
-/// In a file they are metadata of the same names with the prefix `medium_`; rows of a tabulated phase function are stored
-/// as text.
+/// In a file they are metadata of the same names with the prefix `medium_`; rows of a tabulated phase function are
+/// stored as text.
 void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
 void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }
