@@ -154,13 +154,14 @@ std::string vtkLightPropagationMaps::ReasonNotToDecompose(const tyndall::SolverS
 
 tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& given)
 {
-  const tyndall::PropagationSettings settings = SettingsOn(this, given);
+  tyndall::PropagationSettings settings = SettingsOn(this, given);
   const tyndall::SceneBlock scene = { given.domain, given.medium, given.shining.illumination, {},
     this->Last->Where(this->WarmStart) };
   const tyndall::PropagationSolver solve = SolverOf(this, DeviceOnAll(this, given.domain));
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0 && !this->Preview)
   {
+    settings.facePower |= tyndall::Reflects(scene.illumination); // also in colours that no face reflects
     return tyndall::SolveColours(scene, monitor, [&](const tyndall::SceneBlock& colour, const tyndall::Monitor& watch) {
       tyndall::TargetLight found = tyndall::SolveToTargetError(colour, settings, this->TargetError, watch, solve);
       std::vector<std::string> used = tyndall::Words(found.settings, found.light);

@@ -3,6 +3,7 @@
 #include "Light/LeftOut.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -187,6 +188,20 @@ void AlignMoments(std::vector<LightField>& channels)
   }
 }
 
+/// Sets facePower of channels that have none, because their faces do not reflect, to 0 if others have it.
+void FillFacePower(std::vector<LightField>& channels)
+{
+  std::size_t cells = 0;
+  for (const LightField& channel : channels)
+  {
+    cells = std::max(cells, channel.facePower.size());
+  }
+  for (LightField& channel : channels)
+  {
+    channel.facePower.resize(cells, 0.0f);
+  }
+}
+
 /// Interleaves groups of `width` values of three channels. Returns no values if the channels differ in their number of
 /// values.
 std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>& channels, std::size_t width)
@@ -215,8 +230,8 @@ void AddReport(LightField& light, const LightField& channel)
   add(light.doubts, channel.doubts);
   add(light.leftOut, channel.leftOut);
   light.converged = light.converged && channel.converged;
-  light.relativeError = channel.relativeError <= light.relativeError ? light.relativeError : channel.relativeError;
-  light.solves = std::max(light.solves, channel.solves);
+  const bool larger = !(channel.relativeError <= light.relativeError); // or one of both is not known
+  light.relativeError = larger && !std::isnan(light.relativeError) ? channel.relativeError : light.relativeError;
   for (std::size_t i = 0; i < std::min(light.settingsUsed.size(), channel.settingsUsed.size()); ++i)
   {
     const std::string& other = channel.settingsUsed[i];
@@ -245,6 +260,7 @@ void AddReport(LightField& light, const LightField& channel)
 LightField JoinChannels(std::vector<LightField> channels)
 {
   AlignMoments(channels);
+  FillFacePower(channels);
   std::array<std::vector<std::pair<std::vector<float>*, std::size_t>>, Three> arrays;
   for (std::size_t c = 0; c < Three; ++c)
   {
@@ -281,6 +297,7 @@ LightField JoinChannels(std::vector<LightField> channels)
     for (std::size_t face = 0; face < light.facePowerOut.size(); ++face)
     {
       put(light.facePowerOut[face], one.facePowerOut[face]);
+      put(light.faceAlbedo[face], one.faceAlbedo[face]);
     }
     if (c > 0)
     {

@@ -135,6 +135,7 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
   medium.sigma_s = { sigma_s.data(), 3 };
   Illumination faint = scene.light;
   faint.faces[2] = { 1.0, 1e-3, 1.0 };
+  faint.faceAlbedo[4] = { 0.5, 0.25, 0.0 };
   const auto solve = [&](const SceneBlock& block, const Monitor& monitor) {
     TargetLight found = SolveToTargetError(block, {}, 0.03, monitor, SolverOn(this->GetDevice()));
     std::vector<std::string> words = Words(found.settings, found.light);
@@ -143,6 +144,7 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
   const Domain domain(medium.grid);
   const LightField all = SolveColours({ domain, medium, faint }, {}, solve);
   double largest = 0.0;
+  int solves = 0;
   for (int c = 0; c < 3; ++c)
   {
     const OneChannelScene one(medium, faint, c);
@@ -152,8 +154,16 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
       ASSERT_EQ(all.fluence[3 * i + c], alone.fluence[i]) << c << ", " << i;
     }
     EXPECT_EQ(all.halfRangeFlux[c], alone.halfRangeFlux[0]);
+    EXPECT_EQ(all.faceAlbedo[4][c], faint.faceAlbedo[4][c]);
+    for (std::size_t i = 0; i < all.facePower.size() / 3; ++i)
+    {
+      ASSERT_EQ(all.facePower[3 * i + c], alone.facePower.empty() ? 0.0f : alone.facePower[i]) << c << ", " << i;
+    }
+    solves += alone.solves;
     largest = std::max(largest, alone.relativeError);
   }
+  EXPECT_FALSE(all.facePower.empty());
+  EXPECT_EQ(all.solves, solves);
   EXPECT_EQ(all.relativeError, largest);
   EXPECT_NE(all.settingsUsed[0].find(", "), std::string::npos) << all.settingsUsed[0]; // a number a colour
 }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -366,7 +367,11 @@ LightField SolveColours(const SceneBlock& scene, const Monitor& monitor,
       solve({ domain, one.medium, one.light, scene.index, scene.kept ? &scene.kept->channels[c] : nullptr },
         OfPart(monitor, c / 3.0, (c + 1) / 3.0)));
   }
-  return JoinChannels(std::move(channels));
+  const int solves = std::accumulate(
+    channels.begin(), channels.end(), 0, [](int sum, const LightField& channel) { return sum + channel.solves; });
+  LightField light = JoinChannels(std::move(channels));
+  light.solves = solves;
+  return light;
 }
 
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings)

@@ -332,9 +332,7 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
     return SolveBySweeps(device, *problem, illumination, how, monitor, kept);
   }
   problem.reset();
-  LightField light = SolveOneByOne(device, std::move(channels), monitor, kept);
-  light.faceAlbedo = illumination.faceAlbedo;
-  return light;
+  return SolveOneByOne(device, std::move(channels), monitor, kept);
 }
 }
 
