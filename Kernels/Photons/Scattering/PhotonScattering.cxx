@@ -476,18 +476,24 @@ double ScatteringForecast::Scatterings(const Grid& whole, const Photon& photon, 
 
 double ScatteringForecast::Scatterings(const Domain& domain, const std::vector<Photon>& share) const
 {
-  std::vector<double> sums(4, 0.0);
+  std::vector<double> sums(6, 0.0); // scatterings by channel, and number of photons with power in it
   const std::size_t stride = share.size() / MostExamined + 1;
   for (std::size_t i = 0; i < share.size(); i += stride)
   {
     for (int c = 0; c < 3; ++c)
     {
-      sums[c] += this->Scatterings(domain.Whole(), share[i], c);
+      const bool shines = share[i].power[c] > 0.0f;
+      sums[c] += shines ? this->Scatterings(domain.Whole(), share[i], c) : 0.0;
+      sums[3 + c] += shines ? 1.0 : 0.0;
     }
-    sums[3] += 1.0;
   }
   sums = domain.Sum(sums);
-  return std::max({ sums[0], sums[1], sums[2] }) / std::max(sums[3], 1.0);
+  double most = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    most = std::max(most, sums[c] / std::max(sums[3 + c], 1.0));
+  }
+  return most;
 }
 
 std::string ScatteringForecast::Warning(const Domain& domain, const std::vector<Photon>& share, int maximumOrders) const
