@@ -145,8 +145,11 @@ SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) con
 {
   const VolumeLayout& layout = volume.layout;
   const double size = layout.grid.VoxelVolume();
-  const std::vector<float> path = Planar(layout, layout.channels,
-    [&](std::size_t i, int c) { return static_cast<float>(size * this->Image.fluence.At(i, c)); });
+  std::vector<float> path;
+  volume.domain.Collective([&] {
+    path = Planar(layout, layout.channels,
+      [&](std::size_t i, int c) { return static_cast<float>(size * this->Image.fluence.At(i, c)); });
+  });
   const std::vector<float> moments =
     volume.deposit.firstMoments ? this->FirstMoments(volume, path) : std::vector<float>();
   if (layout.grid.VoxelCount() == 0)
@@ -179,14 +182,17 @@ std::vector<float> GivenLight::FirstMoments(const UncollidedVolume& volume, cons
   const VolumeLayout& layout = volume.layout;
   const int channels = layout.channels;
   std::vector<float> own;
-  for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < channels; ++c)
+  volume.domain.Collective([&] {
+    own.reserve(2 * channels * layout.grid.VoxelCount());
+    for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
     {
-      own.push_back(this->Image.fluence.At(i, c));
-      own.push_back(static_cast<float>(this->Scattering.SigmaT(i, c)));
+      for (int c = 0; c < channels; ++c)
+      {
+        own.push_back(this->Image.fluence.At(i, c));
+        own.push_back(static_cast<float>(this->Scattering.SigmaT(i, c)));
+      }
     }
-  }
+  });
   const Halo around(volume.domain.Comm(), volume.domain.Partition(), volume.periodic, 1);
   const LightAtFaces light(around, around.Spread(own, 2 * channels), channels);
   const std::array<double, 3>& h = layout.grid.spacing;
