@@ -216,24 +216,32 @@ public:
   }
 
   /// Executes the quick runs again, all in turn, so that other load on the machine at one time affects no row alone.
+  /// Ends early if the device fails.
   /// @param end  time of the device's clock at which the budget is spent
   void RepeatQuick(double end, const Monitor& monitor)
   {
     constexpr double quick = 0.05; // seconds
-    constexpr int turns = 5;
+    const Monitor watch = PartUntil(this->TheDevice, end, monitor, 1.0, 1.0);
     LightField light;
-    for (int turn = 0; turn < turns; ++turn)
+    const std::size_t rows = this->Executed.size();
+    try
     {
-      for (std::size_t i = 0; i < this->Executed.size(); ++i)
+      for (std::size_t i = 0; i < 5 * rows; ++i)
       {
-        ComparisonRow& row = this->Result.rows[i];
+        ComparisonRow& row = this->Result.rows[i % rows];
         if (row.seconds < quick && this->TheDevice.Now() + row.seconds < end)
         {
-          const RunTime time = this->Timed(*this->Executed[i], light, monitor);
+          const RunTime time = this->Timed(*this->Executed[i % rows], light, watch);
           row.seconds = std::min(row.seconds, time.wall);
           row.coreSeconds = std::min(row.coreSeconds, time.core); // stays unknown
         }
       }
+    }
+    catch (const TimeIsUp&) // all rows have their times
+    {
+    }
+    catch (const DeviceError&)
+    {
     }
   }
 

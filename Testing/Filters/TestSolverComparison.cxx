@@ -77,7 +77,7 @@ void LightIsNoErrorOfItself(test::Claims& claims)
       Number(table, 0, "error_l2") == 0.0 && Number(table, 0, "error_max") == 0.0, "the same light has no error");
     claims.That(Number(table, 0, "pareto") == 1.0, "and nothing is better");
     claims.That(Number(table, 0, "seconds") > 0.0 && Number(table, 0, "peak_bytes") > 8 * 8 * 8 * 4, "time and memory");
-    claims.That(Number(table, 0, "core_seconds") > 0.0, "processor time");
+    claims.That(!(Number(table, 0, "core_seconds") <= 0.0), "processor time, not known on a GPU");
     claims.That(Number(table, 0, "iterations") == maps->GetOrders(), "as many orders as the solver tells");
     claims.Near(Number(table, 0, "balance"), maps->GetBalanceError(), 1e-12, "balance");
     auto* again = vtkImageData::SafeDownCast(comparison->GetOutputDataObject(1));

@@ -561,7 +561,7 @@ TEST_F(ComparedByTheClock, TellSecondsWithoutCompilation)
   for (const ComparisonRow& row : found.rows)
   {
     EXPECT_LT(row.seconds, 1.0) << row.setting << ": three seconds go for each kernel that is made";
-    EXPECT_GT(row.coreSeconds, 0.0) << row.setting;
+    EXPECT_EQ(row.coreSeconds > 0.0, this->GetDevice().IsCpu()) << row.setting; // not known on a GPU
   }
 }
 
