@@ -30,9 +30,11 @@ namespace
 /// wraps in the first sweep, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
-/// Number of scattering orders up to which anisotropic scattering in slabs is not accelerated. Acceleration represents
-/// scattering by angular moments, which is less accurate than scattering from each direction into all directions.
+/// Number of scattering orders up to which anisotropic scattering is not accelerated in slabs, or if the tolerance is
+/// below RoundedMoments. Acceleration represents scattering by angular moments, which is less accurate than scattering
+/// from each direction into all directions, and whose rounding errors keep the residual above 1e-7 or so.
 constexpr double FewOrders = 100.0;
+constexpr double RoundedMoments = 1e-6;
 
 /// Directions of a quadrature that are swept. If a symmetry makes several directions carry the same light
 /// (SweptDirections), one of them is swept, with the solid angle of all.
@@ -393,8 +395,8 @@ struct SweptProblem
     }
     const PropagationProblem& own = this->inMoments ? *this->inMoments : even;
     this->how = even.HasGivenLight() ? IterationScheme::SourceIteration : ChooseIterationScheme(own);
-    const bool byDirections =
-      this->inMoments && (!this->IsAccelerated() || (own.IsSlab() && OrdersNeeded(own) < FewOrders));
+    const bool isExact = own.IsSlab() || settings.tolerance < RoundedMoments;
+    const bool byDirections = this->inMoments && (!this->IsAccelerated() || (isExact && OrdersNeeded(own) < FewOrders));
     this->problem = byDirections ? nullptr : &own;
   }
   SweptProblem(const SweptProblem&) = delete;
