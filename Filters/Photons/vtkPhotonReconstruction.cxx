@@ -5,6 +5,7 @@
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Device/HostThreads.h"
+#include "Light/LeftOut.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
@@ -21,10 +22,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -132,8 +131,7 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
   {
     all.push_back(before->GetValue(i));
   }
-  const auto isNew = [&](const std::string& word) { return std::find(all.begin(), all.end(), word) == all.end(); };
-  std::copy_if(more.begin(), more.end(), std::back_inserter(all), isNew);
+  tyndall::AddMissing(all, more);
   return all;
 }
 

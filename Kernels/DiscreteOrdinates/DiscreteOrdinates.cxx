@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -98,15 +97,11 @@ LightField SolveChannels(
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
       : SolveSweptOrders(device, ofChannel, angles, settings, part);
     domain.Collective([&] { TakeChannel(light, found, c); });
-    std::vector<std::string> words = found.leftOut;
     if (c == 0)
     {
-      const std::vector<std::string> ofAll = Words(scene, far, angles.phase.Terms() == 1, settings);
-      words.insert(words.begin(), ofAll.begin(), ofAll.end());
+      light.leftOut = Words(scene, far, angles.phase.Terms() == 1, settings);
     }
-    std::copy_if(words.begin(), words.end(), std::back_inserter(light.leftOut), [&](const std::string& word) {
-      return std::find(light.leftOut.begin(), light.leftOut.end(), word) == light.leftOut.end();
-    });
+    AddMissing(light.leftOut, found.leftOut);
   }
   DescribeLight(light, device, far, scene.faces);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace tyndall
@@ -223,12 +222,8 @@ std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>
 /// Adds the report of a channel that was solved later to the report of `light`.
 void AddReport(LightField& light, const LightField& channel)
 {
-  const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
-    std::copy_if(more.begin(), more.end(), std::back_inserter(all),
-      [&](const std::string& line) { return std::find(all.begin(), all.end(), line) == all.end(); });
-  };
-  add(light.doubts, channel.doubts);
-  add(light.leftOut, channel.leftOut);
+  AddMissing(light.doubts, channel.doubts);
+  AddMissing(light.leftOut, channel.leftOut);
   light.converged = light.converged && channel.converged;
   const bool larger = !(channel.relativeError <= light.relativeError); // or one of both is not known
   light.relativeError = larger && !std::isnan(light.relativeError) ? channel.relativeError : light.relativeError;

@@ -2,7 +2,9 @@
 
 #include "Numerics/NumberText.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tyndall
 {
@@ -104,5 +106,11 @@ std::string DirectionsAlongSlab(int perFace)
   return "directions too few for a slab, or parallel to a periodic axis: solved with " + std::to_string(perFace) +
     " a face";
 }
+}
+
+void AddMissing(std::vector<std::string>& texts, const std::vector<std::string>& more)
+{
+  std::copy_if(more.begin(), more.end(), std::back_inserter(texts),
+    [&](const std::string& text) { return std::find(texts.begin(), texts.end(), text) == texts.end(); });
 }
 }

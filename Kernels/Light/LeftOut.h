@@ -4,6 +4,7 @@
 #include "Medium/VoxelBox.h"
 
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -66,4 +67,7 @@ std::string TwoAxes(int polarNodes);
 /// number.
 std::string DirectionsAlongSlab(int perFace);
 }
+
+/// Appends the texts of `more` that `texts` does not contain yet.
+void AddMissing(std::vector<std::string>& texts, const std::vector<std::string>& more);
 }
