@@ -197,7 +197,7 @@ PictureErrorCasters::PictureErrorCasters(Device& device, const Medium& medium, c
   coarser.shadowRays = false;
   coarser.showBackground = false;
   this->ofLight = std::make_unique<MediumRayCaster>(device, dark, other, unlit, coarser, ior, block);
-  const double largest = (block ? block->shared : SharedSceneOf(medium, light, ior, settings)).largestError;
+  const double largest = block ? block->shared.largestError : LargestError(medium, light);
   if (light.errorLength > 0.0 && largest > 0.0)
   {
     const ErrorAndVariance of(medium, light, largest);

@@ -32,6 +32,18 @@ double LeastStraightOn(const Medium& medium, const SolvedLight& light, int chann
   return least;
 }
 
+double LargestError(const Medium& medium, const SolvedLight& light)
+{
+  const Field& error = light.fluenceError;
+  const std::size_t count = error.values ? medium.grid.VoxelCount() * error.components : 0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    largest = std::max<double>(largest, error.values[i]);
+  }
+  return largest;
+}
+
 SharedScene SharedSceneOf(
   const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings)
 {
@@ -42,11 +54,7 @@ SharedScene SharedSceneOf(
   {
     shared.straightOn[c] = LeastStraightOn(medium, light, c);
   }
-  const std::size_t errors = light.fluenceError.values ? medium.grid.VoxelCount() * light.fluenceError.components : 0;
-  for (std::size_t i = 0; i < errors; ++i)
-  {
-    shared.largestError = std::max<double>(shared.largestError, light.fluenceError.values[i]);
-  }
+  shared.largestError = LargestError(medium, light);
   return shared;
 }
 

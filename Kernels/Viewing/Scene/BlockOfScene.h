@@ -79,6 +79,8 @@ SharedScene SharedSceneOf(
 /// Smallest straightOn of the voxels that scatter in a channel; 1 if none does or if straightOn is not known.
 /// straightOn is the fraction of scattering that the solver treats as unscattered.
 double LeastStraightOn(const Medium& medium, const SolvedLight& light, int channel);
+/// Largest SolvedLight::fluenceError, W / length^2; 0 if it is not known.
+double LargestError(const Medium& medium, const SolvedLight& light);
 
 /// A block as it is rendered. The composite of all blocks' pictures equals the picture of the whole domain up to
 /// rounding.
