@@ -7,6 +7,7 @@
 
 #include "Program.h"
 
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Viewing/MediumRayCaster.h"
@@ -32,7 +33,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -138,9 +138,9 @@ Seconds Median(int views, const std::function<void(int)>& show)
   for (int view = 0; view < views; ++view)
   {
     const auto start = std::chrono::steady_clock::now();
-    const std::clock_t clock = std::clock();
+    const double clock = CoreSeconds();
     show(view);
-    cores.push_back(static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC);
+    cores.push_back(CoreSeconds() - clock);
     wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   const auto middle = [](std::vector<double> values) {
