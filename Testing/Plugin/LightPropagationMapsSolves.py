@@ -102,3 +102,9 @@ for solver, settings in (LightPropagationMaps, {"UncollidedDirections": 25}), (D
     said = light.SMProxy.GetProperty("HalfRangeFlux").GetDocumentation().GetDescription()
     told = re.search(r"([\d.]+) with 25\s+directions", said)[1]
     assert f"{light.HalfRangeFlux:.{len(told) - 2}f}" == told, (light.HalfRangeFlux, told)
+
+medium.MeanCosine = 0.5
+light.UpdatePipeline()
+light.UpdatePropertyInformation()
+told = re.search(r"([\d.]+) for a sky if scattering is anisotropic", said)[1]
+assert f"{light.HalfRangeFlux:.{len(told) - 2}f}" == told, (light.HalfRangeFlux, told)
