@@ -10,8 +10,23 @@ endif ()
 # Who answers for a package is who makes it; the project itself has no address.
 set(TYNDALL_PACKAGE_MAINTAINER "The Tyndall authors <noreply@tyndall.invalid>" CACHE STRING
   "Name and address in the Debian packages: of who makes them")
-set(debian "${CMAKE_CURRENT_LIST_DIR}/Debian")
 set(debian_made "${CMAKE_BINARY_DIR}/Debian")
+set(postinst [=[
+#!/bin/sh
+# Python's modules are compiled when they are installed, as those of Debian's own packages are.
+set -e
+if [ "$1" = "configure" ] && command -v py3compile >/dev/null; then
+  py3compile -p @package@
+fi
+]=])
+set(prerm [=[
+#!/bin/sh
+# What was compiled goes first, so that the folder is empty when the package goes.
+set -e
+if command -v py3clean >/dev/null; then
+  py3clean -p @package@
+fi
+]=])
 
 # tyndall_package(<group> <package> SUMMARY <text> [DEPENDS <list>] [CONFLICTS <list>] [CONTROL <file>...]
 # COMPONENTS <component>...): a package of what is installed as these components, with these files of control. The
@@ -26,8 +41,9 @@ function (tyndall_package group package)
   set("CPACK_DEBIAN_${group_upper}_DESCRIPTION" "${arg_SUMMARY}" PARENT_SCOPE)
   if ("python" IN_LIST arg_COMPONENTS)
     foreach (script IN ITEMS postinst prerm)
-      configure_file("${debian}/${script}.in" "${debian_made}/${package}/${script}" @ONLY
-        FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+      file(CONFIGURE OUTPUT "${debian_made}/${package}/${script}" CONTENT "${${script}}" @ONLY)
+      file(CHMOD "${debian_made}/${package}/${script}" FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ
+        GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
       list(APPEND arg_CONTROL "${debian_made}/${package}/${script}")
     endforeach ()
   endif ()
@@ -60,11 +76,12 @@ if (TYNDALL_PLUGIN)
     COMPONENTS runtime paraview_plugins paraview_conf python Unspecified)
 else ()
   set(soversion "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+  file(WRITE "${debian_made}/triggers" "activate-noawait ldconfig\n")
   file(WRITE "${debian_made}/shlibs" "libvtkTyndall ${soversion} ${library_package} (= ${PROJECT_VERSION})\n")
   tyndall_package(library ${library_package}
     SUMMARY "The library of VTK filters, for Debian's VTK ${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}."
     DEPENDS "${opencl}"
-    CONTROL "${debian_made}/shlibs" "${debian}/triggers"
+    CONTROL "${debian_made}/shlibs" "${debian_made}/triggers"
     COMPONENTS runtime)
   tyndall_package(headers libtyndall-dev
     SUMMARY "Headers and CMake files of the library of VTK filters."
