@@ -12,7 +12,8 @@
 #include "Program.h"
 #include "Report.h"
 
-#include "Distribution/RanksInThreads.h"
+#include "../Kernels/RanksInThreads.h"
+
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"

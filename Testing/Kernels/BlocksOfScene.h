@@ -3,8 +3,8 @@
 #include "PhotonScene.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Distribution/RanksInThreads.h"
 #include "Photons/Marching/PhotonMarcher.h"
+#include "RanksInThreads.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
 #include <gtest/gtest.h>

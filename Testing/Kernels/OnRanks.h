@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Distribution/Domain.h"
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 
 #include <gtest/gtest.h>
 

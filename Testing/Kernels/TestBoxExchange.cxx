@@ -1,7 +1,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/BrickedBytes.h"
 #include "Distribution/Halo.h"
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 
 #include <gtest/gtest.h>
 

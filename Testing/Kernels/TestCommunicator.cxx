@@ -1,7 +1,7 @@
 #include "Device/Errors.h"
 #include "Distribution/Communicator.h"
-#include "Distribution/RanksInThreads.h"
 #include "ErrorWords.h"
+#include "RanksInThreads.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "LightPropagation/Convergence.h"
 
 #include "Device/Errors.h"
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

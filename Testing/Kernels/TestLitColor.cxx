@@ -1,8 +1,8 @@
 #include "Viewing/LitColor.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Distribution/RanksInThreads.h"
 #include "Numerics/Constants.h"
+#include "RanksInThreads.h"
 
 #include <gtest/gtest.h>
 

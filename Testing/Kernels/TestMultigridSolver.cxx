@@ -3,8 +3,8 @@
 #include "DeviceTest.h"
 
 #include "Distribution/Halo.h"
-#include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
+#include "RanksInThreads.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "BlocksOfView.h"
 
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "Viewing/Scene/BlockOfScene.h"
 

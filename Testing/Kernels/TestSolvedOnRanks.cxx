@@ -4,10 +4,9 @@
 
 #include "Device/Device.h"
 #include "Device/Errors.h"
-#include "Device/MemoryBudget.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
-#include "Distribution/RanksInThreads.h"
 #include "LatticeBoltzmann/LatticeLight.h"
+#include "RanksInThreads.h"
 
 #include <cstddef>
 #include <cstdio>

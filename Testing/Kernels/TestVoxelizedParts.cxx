@@ -3,7 +3,7 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/BoxExchange.h"
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 #include "Refraction/Index/RefractiveMedium.h"
 
 #include <gmock/gmock.h>

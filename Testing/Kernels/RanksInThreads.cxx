@@ -1,4 +1,4 @@
-#include "Distribution/RanksInThreads.h"
+#include "RanksInThreads.h"
 
 #include "Numerics/NumberText.h"
 
