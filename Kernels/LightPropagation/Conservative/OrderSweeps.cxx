@@ -164,7 +164,8 @@ void OrderSweeps::AddOutside(const VoxelBox& box)
 {
   const TransportParts& parts = this->Parts;
   const VolumeLayout& layout = parts.Layout;
-  cl::Kernel add = parts.TheDevice.Kernel("add_outside", kernel_source::SourceIteration);
+  cl::Kernel add =
+    parts.TheDevice.Kernel("add_outside", kernel_source::SourceIteration, SummingOption(parts.TheDevice));
   const std::array<int, 3>& n = layout.grid.size;
   With(add, parts.Path, parts.Fluence, cl_ulong(layout.Stride()), static_cast<float>(1.0 / layout.grid.VoxelVolume()),
     cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { box.first[0], box.first[1], box.first[2] } },

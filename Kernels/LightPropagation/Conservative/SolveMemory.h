@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Device/Device.h"
-#include "Device/MemoryBudget.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 

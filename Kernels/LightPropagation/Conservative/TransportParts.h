@@ -12,7 +12,6 @@
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
-#include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"

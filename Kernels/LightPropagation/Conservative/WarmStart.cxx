@@ -125,7 +125,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source, int functions, int parts
     const std::size_t lines = static_cast<std::size_t>(layout.grid.size[1]) * layout.grid.size[2];
     const std::size_t arrays = static_cast<std::size_t>(layout.channels) * parts;
     Buffer<float> tally(device, lines * arrays, "sums");
-    cl::Kernel kernel = device.Kernel("sum_magnitudes", kernel_source::SourceIteration);
+    cl::Kernel kernel = device.Kernel("sum_magnitudes", kernel_source::SourceIteration, SummingOption(device));
     With(kernel, layout.Places(functions), source, tally, cl_ulong(layout.Stride()));
     device.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(lines, arrays), GroupOfLargeItems(device, 2));

@@ -35,7 +35,7 @@ Rgb EscapeCorrection::Apply(const Buffer<float>& path, const Buffer<float>& sour
 {
   const int channels = this->Layout.channels;
   cl::Kernel kernel =
-    this->TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection, SummingOption(this->TheDevice));
+    this->TheDevice.Kernel("let_escape", kernel_source::SourceIteration, SummingOption(this->TheDevice));
   const std::size_t chunks = PartsOf<std::size_t>(this->Layout.Stride(), CollectChunk);
   Buffer<float> tally(this->TheDevice, chunks * channels, "sums");
   With(kernel, path, source, this->Extra, this->SigmaT, tally, cl_ulong(this->Layout.Stride()),

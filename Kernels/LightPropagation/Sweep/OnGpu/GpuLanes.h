@@ -16,7 +16,7 @@ namespace tyndall
 SweepLane LaneOf(const SweepPlan& plan, int way);
 
 /// Number of floats per ray and plane in the arrays that hold the rays which enter or leave a lane's planes sideways
-/// (LanePlane.cl).
+/// (SweepOnGpuShared.h).
 std::size_t SideFloats(const SweepLane& lane);
 
 /// For each ray of a sweep plan that marches in one sense (`way`, 0 forward, 1 backward): the values of the angular

@@ -1,10 +1,10 @@
 // Incident radiance and escaped power per cell of the box's faces, in a sweep on GPUs. The light incident through each
-// cell is written to the sides (LanePlane.cl) before planes are crossed; escaped power is summed per cell afterwards,
-// by one work-item per cell, so the order of summation is fixed and no atomics are needed. Physics and numerics are
-// those of SweepSides.cl and SweepMaps.cl. The host defines
+// cell is written to the sides (SweepOnGpuShared.h) before planes are crossed; escaped power is summed per cell
+// afterwards, by one work-item per cell, so the order of summation is fixed and no atomics are needed. Physics and
+// numerics are those of SweepSides.cl and SweepMaps.cl. The host defines
 //   CHANNELS  channels swept together
 
-#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "Numerics/Numerics.cl"
 
 // Cells of the box's faces that adjoin one plane of a lane, for one channel. A lane is the rays that march in one sense
@@ -59,7 +59,7 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
 }
 
 // Writes the power of the rays that enter through the sides of planes, W, for one lane (the rays that march in one
-// sense along an axis). One work-item per position along the sides, ray and channel, and plane (LanePlane.cl).
+// sense along an axis). One work-item per position along the sides, ray and channel, and plane (SweepOnGpuShared.h).
 // crossings  sideways moves of rays, from the lane's first plane on
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
@@ -119,7 +119,7 @@ static float part_through(const __global SweepLane* lane, int spread, int plane,
 
 // Power with which a ray leaves a plane through cell `i` of a side, W. At an edge of the plane, half of the power of
 // rays that move along u and v at once leaves through each of the two sides.
-// @param in, out  power of the rays at the sides, for this ray and plane (LanePlane.cl)
+// @param in, out  power of the rays at the sides, for this ray and plane (SweepOnGpuShared.h)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
   const __global float* in, const __global float* out)
 {

@@ -10,12 +10,12 @@
 //   FUNCTIONS  number of angular functions; 1: fluence only
 //   BEAMS      number of sources with their own angular distribution; only if ANGULAR
 //   SIDES      0: rays that enter and leave through the sides of the box are not stored
-//              1: they are stored (LanePlane.cl); the box is a block (subdomain), whose axes are open
+//              1: they are stored (SweepOnGpuShared.h); the box is a block (subdomain), whose axes are open
 //              2: they are stored; the box is the domain, with light given and summed per cell of its faces
 //              (LaneFaces.cl)
 
 #define REAL_WIDTH 1
-#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "LightPropagation/Sweep/OnGpu/VoxelCrossing.cl"
 
 static void put(__global float* where, float value, int adds)
@@ -202,8 +202,8 @@ static void put_escaped(
 // directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
 // functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
 // escaped   power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face] for each lane
-// sides_in, sides_out  power of the rays that enter and leave through the sides, W, in the layout of LanePlane.cl; if
-//                      SIDES is not 0
+// sides_in, sides_out  power of the rays that enter and leave through the sides, W, in the layout of
+//                      SweepOnGpuShared.h; if SIDES is not 0
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, const __global float* before, __global float* after,

@@ -34,7 +34,7 @@ typedef struct
   ulong escaped;
   int positions; ///< number of positions along a face in `escaped`
   int rays;
-  /// Index of the first float of the rays at the sides of the lane's planes, [plane][ray][channel] (LanePlane.cl), if
+  /// Index of the first float of the rays at the sides of the lane's planes, [plane][ray][channel] (SIDE_FLOATS), if
   /// light is given or summed per cell of the faces
   ulong sides;
 } SweepLane;
@@ -85,3 +85,19 @@ typedef struct
   MomentPlaces moments; ///< memory layout of the moments of source and path
 } PlaneLaunch;
 SHARED_END
+
+#ifdef __OPENCL_C_VERSION__
+// Number of floats per ray, channel and plane of a lane that store the power of the rays which enter or leave through
+// the sides, [plane][ray][channel][SIDE_FLOATS]; planes are counted from where rays start. There is one float per
+// column of the plane for the rays that cross the face normal to v, one per row for those that cross the face normal to
+// u, and one for the ray that crosses both at once.
+#define SIDE_FLOATS(plane) ((plane)->sizeU + (plane)->sizeV + 1)
+
+// Index in the box of the k-th plane that the rays of a lane (one sense along an axis) cross, k >= 0.
+static int plane_of(const __global SweepLane* lane, int k)
+{
+  // If k is beyond the planes of the axis, rays are in another lap around a periodic axis
+  const int of_axis = k % lane->planes.sizeP;
+  return lane->backward ? lane->planes.sizeP - 1 - of_axis : of_axis;
+}
+#endif

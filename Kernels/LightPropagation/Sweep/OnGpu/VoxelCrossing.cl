@@ -3,7 +3,7 @@
 // these neighbours (numerics.md, Eq. (30a)).
 
 #pragma once
-#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "Numerics/Numerics.cl"
 
 // Whether light that crosses a side leaves the domain. Sides 0 to 3 are the faces -u, +u, -v, +v.
