@@ -206,8 +206,7 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 }
 
 // Marks the rows that contain voxels with a nonzero skin_of().
-//   skins  [z][y], 1: marked; 2: one of these voxels is opaque (over 100 mean free paths); 3: one has over 1e9, so that
-//          most of its fluence is rounding error; initially 0
+//   skins  [z][y], ThickSkin, OpaqueSkin or EndlessSkin; initially NoSkin
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
@@ -226,7 +225,7 @@ __kernel void diffusion_skins(DiffusionLayout layout, const __global float* exti
     }
     if (sum_of(most) > 0.0f)
     {
-      skins[r] = sum_of(endless) > 0.0f ? 3 : sum_of(opaque) > 0.0f ? 2 : 1;
+      skins[r] = sum_of(endless) > 0.0f ? EndlessSkin : sum_of(opaque) > 0.0f ? OpaqueSkin : ThickSkin;
     }
   }
 }

@@ -17,6 +17,15 @@ enum
   RowsLead = 16  ///< padding before the first row of a multigrid level, floats
 };
 
+/// Optical thickness of the thickest voxel of a row that lies next to a thinner one.
+enum
+{
+  NoSkin = 0,     ///< no voxel of the row is optically thick and next to a thinner one
+  ThickSkin = 1,  ///< at most 100 mean free paths
+  OpaqueSkin = 2, ///< over 100 mean free paths
+  EndlessSkin = 3 ///< over 1e9 mean free paths: most of the voxel's fluence is rounding error
+};
+
 /// A box of voxels of a multigrid level and the memory layout of its arrays. Voxels form rows along x. One float before
 /// and one after each row are ghosts, so that vectors may be loaded with an offset of one voxel. Planes are padded so
 /// that rows of neighbouring planes do not map to the same cache lines.

@@ -108,7 +108,8 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
     }
   });
   this->Solver->Coarsen();
-  this->OpaqueBesideThin = this->TheDomain.Max(this->System ? 1.0 * this->System->MostOpaqueSkin() : 0.0) == 2.0;
+  const int skin = this->System ? this->System->MostOpaqueSkin() : static_cast<int>(NoSkin);
+  this->OpaqueBesideThin = this->TheDomain.Max(1.0 * skin) == OpaqueSkin;
   this->TheDomain.Collective([&] {
     const std::size_t floats = this->OpaqueBesideThin ? this->Solver->Right().Size() : 0;
     this->Balance = Buffer<float>(device, floats, "the diffusion system");

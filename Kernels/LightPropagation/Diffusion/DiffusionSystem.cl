@@ -507,7 +507,7 @@ __kernel void diffusion_put_flux(
 // Changes the next sweep's source in optically thick voxels next to thinner ones. The new source is a weighted mean of
 // the given source and of the source with which the voxel's surface emits the outgoing partial current of diffusion.
 // The weight of the second one is openness(), 0 to 1 (numerics.md, Eqs. (63), (64)).
-//   skins  [z][y], 1: the row of voxels has voxels in which openness() is above 0 (written by diffusion_skins)
+//   skins  [z][y], not NoSkin: the row of voxels has voxels in which openness() is above 0 (written by diffusion_skins)
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* swept,
   const __global float* conductance, const __global float* passed, const __global int* skins, __global float* source)

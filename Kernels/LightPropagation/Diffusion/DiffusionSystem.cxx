@@ -127,13 +127,13 @@ void DiffusionSystem::FindSkins()
 {
   this->Skins =
     Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
-  this->Skins.Fill(0);
+  this->Skins.Fill(NoSkin);
   const Buffer<float>& extinction = this->ExtinctionInRows();
   cl::Kernel kernel = this->RowsKernel("diffusion_skins");
   With(kernel, this->Layout, extinction, this->Skins);
   this->RunRows(kernel);
   const std::vector<cl_int> rows = this->Skins.Read();
-  this->Layout.skin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
+  this->Layout.skin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != NoSkin; });
   this->MostOpaque = *std::max_element(rows.begin(), rows.end());
 }
 

@@ -123,8 +123,7 @@ public:
   /// Changes the next sweep's source in optically thick voxels next to thinner ones, such that the sweep emits the
   /// outgoing partial current of diffusion there (numerics.md, Eqs. (63), (64)).
   void ShapeSource();
-  /// Class of the optical thickness of the thickest voxel that lies next to a thinner one: 3 if over 1e9 mean free
-  /// paths, 2 if over 100, less otherwise.
+  /// Optical thickness of the thickest voxel that lies next to a thinner one, NoSkin to EndlessSkin.
   int MostOpaqueSkin() const { return this->MostOpaque; }
 
   // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have
@@ -199,8 +198,8 @@ private:
   std::size_t Count, BorderCells;
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  int MostOpaque = 0;
-  Buffer<cl_int> Skins; ///< [z][y], not 0: the row of voxels has optically thick voxels next to thinner ones
+  int MostOpaque = NoSkin;
+  Buffer<cl_int> Skins; ///< by row of voxels, [z][y], NoSkin to EndlessSkin
   AndersonMixing Mixing;
   ExactValues Borders;
   /// State from which the next sweep's source is computed, and the last solution, in the layout of State()
