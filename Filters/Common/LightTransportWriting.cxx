@@ -221,8 +221,11 @@ void RemoveLight(vtkImageData* output)
     output->GetCellData()->RemoveArray(array);
   }
   for (const char* fact : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         "settings_used", IgnoredFact, SurfaceRadianceFact, SurfaceErrorFact, ErrorLengthFact, LampsApartFact,
-         FacePowerFact, FaceAlbedoFact, FaceRadianceFact, LitColorDistanceFact, LitColorExposureFact })
+         "settings_used", IgnoredFact, LampsApartFact, LitColorDistanceFact, LitColorExposureFact })
+  {
+    output->GetFieldData()->RemoveArray(fact);
+  }
+  for (const char* fact : FaceFacts)
   {
     output->GetFieldData()->RemoveArray(fact);
   }

@@ -68,6 +68,9 @@ constexpr const char* FaceAlbedoFact = "face_albedo";
 /// Name of field data: radiance that enters through the faces -x to +z of the domain, W/(length^2 sr), for pictures of
 /// angular moments.
 constexpr const char* FaceRadianceFact = "face_radiance";
+/// Names of field data of light at the domain's faces, and of its error.
+constexpr const char* FaceFacts[] = { SurfaceRadianceFact, SurfaceErrorFact, ErrorLengthFact, FacePowerFact,
+  FaceAlbedoFact, FaceRadianceFact };
 
 /// Names of cell arrays. MomentsArray: angular moments of scattered light (LightField::scatteredMoments).
 /// StraightOnArray: fraction of scattering that the solver treats as unscattered (LightField::straightOn).

@@ -16,8 +16,10 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 namespace tyndall
@@ -127,14 +129,14 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
     add(image->GetCellData()->GetArray(name));
   }
   vtkNew<vtkImageData> facts;
-  for (const char* name : { SurfaceRadianceFact, SurfaceErrorFact, ErrorLengthFact, FacePowerFact, FaceAlbedoFact,
-         FaceRadianceFact, LampsApartFact })
-  {
+  const auto addFact = [&](const char* name) {
     if (vtkDataArray* const fact = image->GetFieldData()->GetArray(name))
     {
       facts->GetFieldData()->AddArray(fact);
     }
-  }
+  };
+  std::for_each(std::begin(FaceFacts), std::end(FaceFacts), addFact);
+  addFact(LampsApartFact);
   const std::uint64_t number = ContentKey(facts) ^ std::hash<std::string>()(words);
   return static_cast<double>(number >> 11); // 53 bits, which a double represents exactly
 }

@@ -201,8 +201,7 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   {
     key.Add(tyndall::ChosenArray(this, number, image, tyndall::ViewedNames[number]));
   }
-  for (const char* fact : { tyndall::SurfaceRadianceFact, tyndall::SurfaceErrorFact, tyndall::ErrorLengthFact,
-         tyndall::FacePowerFact, tyndall::FaceAlbedoFact, tyndall::FaceRadianceFact })
+  for (const char* fact : tyndall::FaceFacts)
   {
     key.Add(image->GetFieldData()->GetArray(fact));
   }
