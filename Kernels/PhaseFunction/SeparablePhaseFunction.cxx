@@ -371,6 +371,21 @@ double SeparablePhaseFunction::Value(int i, int j) const
   return value;
 }
 
+double SeparablePhaseFunction::LargestPower() const
+{
+  double most = 0.0;
+  for (int from = 0; from < this->DirectionCount(); ++from)
+  {
+    double sum = 0.0;
+    for (int to = 0; to < this->DirectionCount(); ++to)
+    {
+      sum += this->Directions[to].weight * this->Value(to, from);
+    }
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
 std::vector<SeparableErrors> SeparablePhaseFunction::ErrorsByTerms() const
 {
   const int count = this->DirectionCount();

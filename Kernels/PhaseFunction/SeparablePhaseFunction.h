@@ -90,6 +90,7 @@ public:
     return this->Factors[static_cast<std::size_t>(term) * this->Directions.size() + direction];
   }
   double Value(int i, int j) const; ///< sum_k lambda_k u_k(i) u_k(j), without the peak, 1/sr
+  double LargestPower() const;      ///< largest sum over i of w_i Value(i, j): power scattered from a direction
 
   /// Absolute eigenvalues of the phase matrix (its singular values), largest first. With spherical harmonics: absolute
   /// eigenvalues of the terms.

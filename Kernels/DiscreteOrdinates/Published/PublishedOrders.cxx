@@ -225,24 +225,14 @@ private:
   /// Throws the error of a radiance that grows without bound.
   [[noreturn]] void RefuseGrowth() const
   {
-    const SeparablePhaseFunction& phase = this->Angles.phase;
-    double most = 0.0;
-    for (int from = 0; from < phase.DirectionCount(); ++from)
-    {
-      double sum = 0.0;
-      for (int to = 0; to < phase.DirectionCount(); ++to)
-      {
-        sum += phase.TheDirections()[to].weight * phase.Value(to, from);
-      }
-      most = std::max(most, sum);
-    }
     throw InvalidInput("The light grows without end, and was stopped after " +
       std::to_string(this->Record.All().size() + 1) +
       " steps. Explicit steps as published are stable where sigma_t times the step, the shortest edge of a voxel, is "
       "at most 1 (here up to " +
       Text("%.3g", ThickestStep(this->Scene.medium, this->Scene.channel)) +
       "), and where the phase function scatters no more than comes (along these directions up to " +
-      Text("%.3g", most) + " times of it). Choose the conservative scheme, more directions or smaller voxels.");
+      Text("%.3g", this->Angles.phase.LargestPower()) +
+      " times of it). Choose the conservative scheme, more directions or smaller voxels.");
   }
 
   bool Done() const
