@@ -18,15 +18,7 @@ void Check(const OrdinatesSettings& settings)
   {
     throw InvalidInput("Terms is " + std::to_string(settings.terms) + "; it must be at least 1.");
   }
-  if (settings.maximumOrders < 0)
-  {
-    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +
-      "; give a number of scattering orders, or 0 for as many as the tolerance needs.");
-  }
-  if (!(settings.tolerance > 0.0))
-  {
-    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
-  }
+  CheckOrders(settings.maximumOrders, settings.tolerance);
 }
 
 bool IsPublished(const OrdinatesSettings& settings)

@@ -7,6 +7,19 @@
 
 namespace tyndall
 {
+void CheckOrders(int maximumOrders, double tolerance)
+{
+  if (maximumOrders < 0)
+  {
+    throw InvalidInput("MaximumOrders is " + std::to_string(maximumOrders) +
+      "; give a number of scattering orders, or 0 for as many as the tolerance needs.");
+  }
+  if (!(tolerance > 0.0))
+  {
+    throw InvalidInput("Tolerance is " + Text("%g", tolerance) + "; it must be positive.");
+  }
+}
+
 void Check(const PropagationSettings& settings)
 {
   if (settings.mapResolution < 1 || settings.mapResolution > 16)
@@ -25,15 +38,7 @@ void Check(const PropagationSettings& settings)
       "; give a square number of directions per face, 0 for the same as DirectionsPerFace, or -1 for as many as cost a "
       "quarter more at most.");
   }
-  if (settings.maximumOrders < 0)
-  {
-    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +
-      "; give a number of scattering orders, or 0 for as many as the tolerance needs.");
-  }
-  if (!(settings.tolerance > 0.0))
-  {
-    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
-  }
+  CheckOrders(settings.maximumOrders, settings.tolerance);
   if (settings.source == PropagationSource::Linear && settings.acceleration == PropagationAcceleration::None)
   {
     throw InvalidInput(

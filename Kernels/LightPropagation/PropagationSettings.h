@@ -83,4 +83,6 @@ struct PropagationSettings
 /// Checks that numbers are in their ranges (numbers of directions are checked by the direction sets).
 /// @throws InvalidInput if one is not
 void Check(const PropagationSettings& settings);
+/// @throws InvalidInput if maximumOrders is negative or tolerance is not positive
+void CheckOrders(int maximumOrders, double tolerance);
 }
