@@ -87,33 +87,24 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
 /// the matrix, one array each.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
-  const auto ofMatrix = [&](int to, std::size_t from) {
+  const auto ofMatrix = [&](int to, std::size_t from) -> double {
     const int g = static_cast<int>(from / OrdinateLanes), lane = static_cast<int>(from % OrdinateLanes);
     const std::size_t row = static_cast<std::size_t>(to) * phase.DirectionCount();
-    return static_cast<float>(phase.Matrix()[row + groups.All()[g].direction[lane]] * groups.Weight(g, lane));
+    return phase.Matrix()[row + groups.All()[g].direction[lane]] * groups.Weight(g, lane);
   };
-  const std::size_t parts = this->Sums == PairSums::Terms ? this->TermCount
-    : this->Sums == PairSums::Matrix                      ? groups.Lanes()
-                                                          : 0;
-  std::vector<float> spread;
-  for (const OrdinateGroup& group : groups.All())
-  {
-    for (std::size_t part = 0; part < parts; ++part)
-    {
-      for (const int to : group.direction)
-      {
-        spread.push_back(this->Sums == PairSums::Terms ? static_cast<float>(phase.Factor(to, static_cast<int>(part)))
-                                                       : ofMatrix(to, part));
-      }
-    }
-  }
+  const bool byTerms = this->Sums == PairSums::Terms;
+  const int parts = byTerms ? this->TermCount : this->Sums == PairSums::Matrix ? static_cast<int>(groups.Lanes()) : 0;
+  const std::vector<float> spread = groups.Table(parts, [&](int g, int part, int lane) -> double {
+    const int to = groups.All()[g].direction[lane];
+    return byTerms ? phase.Factor(to, part) : ofMatrix(to, part);
+  });
   for (std::size_t i = 0; i < this->Lanes.size() && this->Sums == PairSums::Passes; ++i)
   {
     const int to = groups.All()[this->Lanes[i][0]].direction[this->Lanes[i][1]];
     std::vector<float> row;
     for (std::size_t from = 0; from < groups.Lanes(); ++from)
     {
-      row.push_back(ofMatrix(to, from));
+      row.push_back(static_cast<float>(ofMatrix(to, from)));
     }
     this->MatrixRows.emplace_back(this->TheDevice, row, "the phase function");
   }

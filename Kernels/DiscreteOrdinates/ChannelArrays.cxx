@@ -243,17 +243,15 @@ void ChannelArrays::Spread(const AngularBasis& basis, const Buffer<float>& momen
   }
   const OrdinateGroups& groups = this->Angles.groups;
   const double perPath = 1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume());
-  std::vector<float> values(groups.Lanes() * basis.Count());
-  for (std::size_t lane = 0; lane < groups.Lanes(); ++lane)
+  std::vector<std::vector<double>> at;
+  for (const Direction& direction : groups.TheDirections())
   {
-    const std::size_t g = lane / OrdinateLanes, ofGroup = lane % OrdinateLanes;
-    const std::vector<double> here = basis.At(groups.Of(static_cast<int>(g), static_cast<int>(ofGroup)).omega);
-    for (std::size_t k = 0; k < here.size(); ++k)
-    {
-      values[(g * here.size() + k) * OrdinateLanes + ofGroup] = static_cast<float>(perPath * here[k]);
-    }
+    at.push_back(basis.At(direction.omega));
   }
-  const Buffer<float> functions(this->TheDevice, values, "the angular functions");
+  const Buffer<float> functions(this->TheDevice,
+    groups.Table(
+      basis.Count(), [&](int g, int k, int lane) { return perPath * at[groups.All()[g].direction[lane]][k]; }),
+    "the angular functions");
   cl::Kernel spread =
     this->TheDevice.Kernel("spread_moments", kernel_source::UpwindSweep, Define("REAL_WIDTH", OrdinateLanes));
   With(spread, this->Layout.Places(basis.Count()), cl_int(0), cl_int(0), cl_ulong(this->Layout.Stride()), moments,

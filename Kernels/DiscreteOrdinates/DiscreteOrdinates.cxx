@@ -126,7 +126,7 @@ public:
   {
     const PropagationSettings& how = problem.Settings();
     if (IsPublished(settings) || settings.scattering != OrdinatesScattering::SphericalHarmonics ||
-      settings.spiralDirections > 0 || settings.terms > 6 * how.directionsPerFace)
+      settings.spiralDirections > 0 || !ResolvesTerms(how, settings.terms))
     {
       return;
     }

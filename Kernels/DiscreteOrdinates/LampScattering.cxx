@@ -54,17 +54,8 @@ LampScattering::LampScattering(
   , Groups(groups)
   , MeanCosine(function.MeanCosine())
 {
-  std::vector<float> omegas;
-  for (int g = 0; g < groups.Count(); ++g)
-  {
-    for (int part = 0; part < 4; ++part)
-    {
-      for (int lane = 0; lane < OrdinateLanes; ++lane)
-      {
-        omegas.push_back(static_cast<float>(part < 3 ? groups.Of(g, lane).omega[part] : groups.Weight(g, lane)));
-      }
-    }
-  }
+  const std::vector<float> omegas = groups.Table(
+    4, [&](int g, int part, int lane) { return part < 3 ? groups.Of(g, lane).omega[part] : groups.Weight(g, lane); });
   const double solidAngle = 4.0 * Pi / static_cast<double>(groups.TheDirections().size());
   this->Omegas = Buffer<float>(device, omegas, "the directions");
   this->ByAngle = MeansByAngle(function, solidAngle);

@@ -56,16 +56,26 @@ OrdinateGroups::OrdinateGroups(std::vector<Direction> directions)
   }
 }
 
-std::vector<float> OrdinateGroups::Table(const std::function<double(int group, int lane)>& value) const
+std::vector<float> OrdinateGroups::Table(
+  int parts, const std::function<double(int group, int part, int lane)>& value) const
 {
   std::vector<float> table;
+  table.reserve(this->Lanes() * parts);
   for (int group = 0; group < this->Count(); ++group)
   {
-    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    for (int part = 0; part < parts; ++part)
     {
-      table.push_back(static_cast<float>(value(group, lane)));
+      for (int lane = 0; lane < OrdinateLanes; ++lane)
+      {
+        table.push_back(static_cast<float>(value(group, part, lane)));
+      }
     }
   }
   return table;
+}
+
+std::vector<float> OrdinateGroups::Table(const std::function<double(int group, int lane)>& value) const
+{
+  return this->Table(1, [&](int group, int, int lane) { return value(group, lane); });
 }
 }

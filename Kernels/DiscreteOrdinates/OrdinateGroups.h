@@ -46,7 +46,10 @@ public:
   {
     return lane < this->Groups[group].count ? this->Of(group, lane).weight : 0.0;
   }
-  /// Table [group][lane] of the values of a function of group and lane (place in the group, 0 to 7).
+  /// Table [group][part][lane] of the values of a function of group, part and lane (place in the group, 0 to 7).
+  /// @param parts  number of values of each direction
+  std::vector<float> Table(int parts, const std::function<double(int group, int part, int lane)>& value) const;
+  /// Table [group][lane].
   std::vector<float> Table(const std::function<double(int group, int lane)>& value) const;
 
 private:

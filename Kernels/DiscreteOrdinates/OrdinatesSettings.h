@@ -64,6 +64,12 @@ void Check(const OrdinatesSettings& settings);
 
 bool IsPublished(const OrdinatesSettings& settings);
 
+/// Whether there are at least as many directions as terms of the phase function.
+inline bool ResolvesTerms(const PropagationSettings& directions, int terms)
+{
+  return terms <= 6 * directions.directionsPerFace;
+}
+
 /// Settings of light propagation maps from which PropagationProblem determines units, channels and axes for a solve by
 /// discrete ordinates.
 PropagationSettings AsPropagation(const OrdinatesSettings& settings);

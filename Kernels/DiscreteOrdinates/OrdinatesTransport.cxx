@@ -170,25 +170,14 @@ void OrdinatesTransport::MakeChannel(int c)
 
 void OrdinatesTransport::LoadFunctions(const AngularValues& angular)
 {
-  std::vector<float> values, weights;
-  for (int g = 0; g < this->Groups.Count(); ++g)
-  {
-    const auto add = [&](std::vector<float>& to, const auto& value) {
-      for (int lane = 0; lane < OrdinateLanes; ++lane)
-      {
-        to.push_back(static_cast<float>(value(this->Ordinates.index[this->Groups.All()[g].direction[lane]], lane)));
-      }
-    };
-    for (int k = 0; k < angular.Functions(); ++k)
-    {
-      add(values, [&](int d, int) { return angular.functions[d][k]; });
-      add(weights, [&](int d, int lane) { return this->Groups.Weight(g, lane) * angular.functions[d][k]; });
-    }
-    for (int b = 0; b < angular.Beams(); ++b)
-    {
-      add(values, [&](int d, int) { return angular.beams[d][b]; });
-    }
-  }
+  const int count = angular.Functions();
+  const auto valueOf = [&](int g, int k, int lane) -> double {
+    const int d = this->Ordinates.index[this->Groups.All()[g].direction[lane]];
+    return k < count ? angular.functions[d][k] : angular.beams[d][k - count];
+  };
+  const std::vector<float> values = this->Groups.Table(count + angular.Beams(), valueOf);
+  const std::vector<float> weights = this->Groups.Table(
+    count, [&](int g, int k, int lane) { return this->Groups.Weight(g, lane) * valueOf(g, k, lane); });
   Device& device = this->Parts.TheDevice;
   this->Values = Buffer<float>(device, values, "the angular functions");
   this->Weights = Buffer<float>(device, weights, "the angular functions");
@@ -383,7 +372,7 @@ struct SweptProblem
   SweptProblem(
     Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const PropagationProblem& even)
   {
-    if (!IteratesAsMaps(settings, even.IsIsotropic()) || settings.terms > 6 * even.Settings().directionsPerFace)
+    if (!IteratesAsMaps(settings, even.IsIsotropic()) || !ResolvesTerms(even.Settings(), settings.terms))
     {
       return;
     }
