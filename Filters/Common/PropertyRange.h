@@ -172,6 +172,11 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
 /// arrays of the output. 1: voxels are the cells between points, n - 1 voxels, with the mean value of their points. If
 /// a cell array is read as well, voxels are the cells, and point arrays are averaged.
 #define tyndallPointDataMacro()                             \
+  enum PointDataKinds                                       \
+  {                                                         \
+    VOXELS_AROUND_POINTS = 0,                               \
+    AVERAGE_TO_CELLS = 1                                    \
+  };                                                        \
   virtual void SetPointData(int kind)                       \
   {                                                         \
     if (tyndall::SetPointData(this, this->PointData, kind)) \

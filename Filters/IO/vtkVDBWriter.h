@@ -106,11 +106,6 @@ public:
   ///@{
   /// How point arrays are written if there are no cell arrays. 0 (default): each point is a voxel; 1: voxels are the
   /// cells between points, with the mean of their points.
-  enum PointDataKinds
-  {
-    VOXELS_AROUND_POINTS = 0,
-    AVERAGE_TO_CELLS = 1
-  };
   tyndallPointDataMacro();
   ///@}
 

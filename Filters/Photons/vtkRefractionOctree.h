@@ -86,11 +86,6 @@ public:
   /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
   /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
   /// the voxels and points are averaged; field data `settings_used` then report it.
-  enum PointDataKinds
-  {
-    VOXELS_AROUND_POINTS = 0,
-    AVERAGE_TO_CELLS = 1
-  };
   tyndallPointDataMacro();
   ///@}
 
