@@ -80,7 +80,6 @@ public:
     /// cosines.
     std::vector<double> cosines, values, below;
   };
-  const Table* TheTable() const { return this->Rows.get(); } ///< rows of a tabulated function; null for other kinds
 
   /// Whether two phase functions have equal values. Isotropic functions are equal, whatever their kinds.
   bool operator==(const PhaseFunction& other) const;

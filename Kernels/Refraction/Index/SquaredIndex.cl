@@ -143,14 +143,3 @@ static float4 squared_index_among(const __global float* first, int row, int laye
     four_sums(rows * spline_slopes(f.x), SUM_OF_ROWS(along_y) * x, SUM_OF_ROWS(along_z) * x, rows * x);
   return (float4)(sums.xyz, middle + sums.w);
 }
-
-// n^2 (w) and its gradient (x, y, z) at position p, in voxels.
-static float4 squared_index(const IndexGrid* grid, const __global float* coefficients, float3 p)
-{
-  const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
-  const float3 q = p - 0.5f;
-  const float3 base =
-    clamp(floor(q), (float3)(-1.0f), (float3)(grid->size[0] - 1.0f, grid->size[1] - 1.0f, grid->size[2] - 1.0f));
-  const __global float* first = coefficients + ((int)base.z + 1) * layer + ((int)base.y + 1) * row + (int)base.x + 1;
-  return squared_index_among(first, row, layer, q - base);
-}

@@ -35,8 +35,6 @@ public:
   ShownBlock(
     std::vector<BlockPixels> frontToBack, std::size_t own, const std::array<int, 2>& size, const ToneMapping& tones);
 
-  const std::array<int, 2>& Size() const { return this->PictureSize; }
-
   /// RGBA of each pixel of the picture, row by row; colours are multiplied by alpha.
   /// @param ended    picture of this block in which opaque surfaces end rays; empty: no ray ends
   /// @param isEnded  whether a surface ends the pixel's ray in this block, one per pixel; empty: none does
