@@ -3,7 +3,9 @@
 #include "Light/LeftOut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace tyndall
@@ -201,6 +203,57 @@ void FillFacePower(std::vector<LightField>& channels)
   }
 }
 
+/// Warnings of three channels. Those that not all channels have name the colours that have them.
+std::vector<std::string> JoinDoubts(const std::vector<LightField>& channels)
+{
+  constexpr std::array<const char*, Three> colours = { "red", "green", "blue" };
+  std::vector<std::string> doubts;
+  for (const LightField& channel : channels)
+  {
+    AddMissing(doubts, channel.doubts);
+  }
+  for (std::string& doubt : doubts)
+  {
+    std::string those;
+    std::size_t count = 0;
+    for (std::size_t c = 0; c < Three; ++c)
+    {
+      const std::vector<std::string>& own = channels[c].doubts;
+      const bool has = std::find(own.begin(), own.end(), doubt) != own.end();
+      those += has ? (those.empty() ? "" : ", ") + std::string(colours[c]) : "";
+      count += has ? 1 : 0;
+    }
+    doubt = count < Three ? "In " + those + ": " + doubt : doubt;
+  }
+  return doubts;
+}
+
+/// Settings of three channels, joined by name. A setting that differs has three values, for red, green and blue; "-" is
+/// the value of a channel that does not have it.
+std::vector<std::string> JoinSettings(const std::vector<LightField>& channels)
+{
+  const std::string equals = " = ";
+  const auto valueIn = [&](const LightField& channel, const std::string& name) {
+    const std::vector<std::string>& texts = channel.settingsUsed;
+    const auto found = std::find_if(texts.begin(), texts.end(),
+      [&](const std::string& text) { return text.compare(0, name.size() + equals.size(), name + equals) == 0; });
+    return found == texts.end() ? std::string("-") : found->substr(name.size() + equals.size());
+  };
+  std::vector<std::string> names;
+  for (const LightField& channel : channels)
+  {
+    std::vector<std::string> own = channel.settingsUsed;
+    std::for_each(own.begin(), own.end(), [&](std::string& text) { text.resize(text.find(equals)); });
+    AddMissing(names, own);
+  }
+  std::for_each(names.begin(), names.end(), [&](std::string& name) {
+    const std::string red = valueIn(channels[0], name), green = valueIn(channels[1], name),
+                      blue = valueIn(channels[2], name);
+    name += equals + (red == green && green == blue ? red : red + ", " + green + ", " + blue);
+  });
+  return names;
+}
+
 /// Interleaves groups of `width` values of three channels. Returns no values if the channels differ in their number of
 /// values.
 std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>& channels, std::size_t width)
@@ -222,16 +275,10 @@ std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>
 /// Adds the report of a channel that was solved later to the report of `light`.
 void AddReport(LightField& light, const LightField& channel)
 {
-  AddMissing(light.doubts, channel.doubts);
   AddMissing(light.leftOut, channel.leftOut);
   light.converged = light.converged && channel.converged;
   const bool larger = !(channel.relativeError <= light.relativeError); // or one of both is not known
   light.relativeError = larger && !std::isnan(light.relativeError) ? channel.relativeError : light.relativeError;
-  for (std::size_t i = 0; i < std::min(light.settingsUsed.size(), channel.settingsUsed.size()); ++i)
-  {
-    const std::string& other = channel.settingsUsed[i];
-    light.settingsUsed[i] += other == light.settingsUsed[i] ? "" : ", " + other.substr(other.find("= ") + 2);
-  }
   std::vector<ConvergenceRow>&rows = light.convergence, more = channel.convergence;
   const bool longer = more.size() > rows.size();
   light.sweepsSaved = longer ? channel.sweepsSaved : light.sweepsSaved;
@@ -256,6 +303,7 @@ LightField JoinChannels(std::vector<LightField> channels)
 {
   AlignMoments(channels);
   FillFacePower(channels);
+  std::vector<std::string> doubts = JoinDoubts(channels), settingsUsed = JoinSettings(channels);
   std::array<std::vector<std::pair<std::vector<float>*, std::size_t>>, Three> arrays;
   for (std::size_t c = 0; c < Three; ++c)
   {
@@ -270,6 +318,8 @@ LightField JoinChannels(std::vector<LightField> channels)
   }
   LightField light = std::move(channels[0]);
   light.channels = static_cast<int>(Three);
+  light.doubts = std::move(doubts);
+  light.settingsUsed = std::move(settingsUsed);
   std::vector<Light> lamps;
   for (std::size_t c = 0; c < Three; ++c)
   {

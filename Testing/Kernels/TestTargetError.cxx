@@ -168,6 +168,24 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
   EXPECT_NE(all.settingsUsed[0].find(", "), std::string::npos) << all.settingsUsed[0]; // a number a colour
 }
 
+TEST(JoinedChannels, NameColoursThatDiffer)
+{
+  std::vector<LightField> channels(3);
+  channels[0].settingsUsed = { "PolarNodes = 8" };
+  channels[1].settingsUsed = { "DirectionsPerFace = 9", "Tolerance = 0.01" };
+  channels[2].settingsUsed = { "DirectionsPerFace = 16", "Tolerance = 0.01" };
+  channels[0].doubts = { "missed.", "thick." };
+  channels[1].doubts = { "thick." };
+  channels[2].doubts = { "thick.", "missed." };
+  const LightField light = JoinChannels(channels);
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(
+    light.settingsUsed, (Texts{ "PolarNodes = 8, -, -", "DirectionsPerFace = -, 9, 16", "Tolerance = -, 0.01, 0.01" }));
+  EXPECT_EQ(light.doubts, (Texts{ "In red, blue: missed.", "thick." }));
+  channels[0].settingsUsed = channels[1].settingsUsed;
+  EXPECT_EQ(JoinChannels(channels).settingsUsed, (Texts{ "DirectionsPerFace = 9, 9, 16", "Tolerance = 0.01" }));
+}
+
 TEST_F(TargetError, LeavesWhatWasChosen)
 {
   const Scene scene = Cloud();
