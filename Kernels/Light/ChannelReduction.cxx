@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -189,17 +190,17 @@ void AlignMoments(std::vector<LightField>& channels)
   }
 }
 
-/// Sets facePower of channels that have none, because their faces do not reflect, to 0 if others have it.
-void FillFacePower(std::vector<LightField>& channels)
+/// Fills an array of channels that do not have it with `value`, if others have it.
+void FillMissing(std::vector<LightField>& channels, std::vector<float> LightField::*array, float value)
 {
-  std::size_t cells = 0;
+  std::size_t size = 0;
   for (const LightField& channel : channels)
   {
-    cells = std::max(cells, channel.facePower.size());
+    size = std::max(size, (channel.*array).size());
   }
   for (LightField& channel : channels)
   {
-    channel.facePower.resize(cells, 0.0f);
+    (channel.*array).resize(size, value);
   }
 }
 
@@ -302,7 +303,9 @@ void AddReport(LightField& light, const LightField& channel)
 LightField JoinChannels(std::vector<LightField> channels)
 {
   AlignMoments(channels);
-  FillFacePower(channels);
+  FillMissing(channels, &LightField::facePower, 0.0f); // of faces that do not reflect
+  FillMissing(channels, &LightField::surfaceRadiance, std::numeric_limits<float>::quiet_NaN());
+  FillMissing(channels, &LightField::surfaceError, std::numeric_limits<float>::quiet_NaN());
   std::vector<std::string> doubts = JoinDoubts(channels), settingsUsed = JoinSettings(channels);
   std::array<std::vector<std::pair<std::vector<float>*, std::size_t>>, Three> arrays;
   for (std::size_t c = 0; c < Three; ++c)

@@ -51,7 +51,8 @@ void Spread(LightField& light, const Rgb& colour);
 
 /// Joins the light of three channels, each solved as a scene of one channel (OneChannelScene). Arrays that not all
 /// channels have are left out, except for angular moments: a channel without moments uses its mean scattered radiance
-/// as moment of degree 0, which includes the light first scattered from lamps.
+/// as moment of degree 0, which includes the light first scattered from lamps. Surface radiance is NaN in channels that
+/// do not have it.
 LightField JoinChannels(std::vector<LightField> channels);
 
 /// Reduces light of three equal channels to one channel.

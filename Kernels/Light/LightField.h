@@ -113,9 +113,10 @@ struct LightField : SolveReport
   std::vector<Light> lampsApart; ///< lamps whose first-collision source is not included in scatteredMoments
   /// Outgoing radiance at the box's faces, W / (length^2 sr), [cell][cosine][channel] for the polar cosines
   /// SurfaceCosines (BoxFaces.h); empty if no boundary voxel is optically thick, or if the solver did not compute this
-  /// radiance.
+  /// radiance; NaN in channels of which, solved alone, this holds.
   std::vector<float> surfaceRadiance;
-  std::vector<float> surfaceError; ///< estimated standard error of surfaceRadiance, same layout; empty: not known
+  /// Estimated standard error of surfaceRadiance, same layout; empty or NaN: not known.
+  std::vector<float> surfaceError;
   EnergyBalance balance;
   /// Net power that escapes through faces -x, +x, -y, +y, -z, +z, W: the power that leaves, minus the power that the
   /// faces reflect.

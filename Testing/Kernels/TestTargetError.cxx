@@ -144,7 +144,7 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
   const Domain domain(medium.grid);
   const LightField all = SolveColours({ domain, medium, faint }, {}, solve);
   double largest = 0.0;
-  int solves = 0;
+  int solves = 0, known = 0;
   for (int c = 0; c < 3; ++c)
   {
     const OneChannelScene one(medium, faint, c);
@@ -159,10 +159,21 @@ TEST_F(TargetError, OfColoursIsThatOfEachAlone)
     {
       ASSERT_EQ(all.facePower[3 * i + c], alone.facePower.empty() ? 0.0f : alone.facePower[i]) << c << ", " << i;
     }
+    for (const auto array : { &LightField::surfaceRadiance, &LightField::surfaceError })
+    {
+      for (std::size_t i = 0; i < (all.*array).size() / 3; ++i)
+      {
+        const float value = (all.*array)[3 * i + c];
+        ASSERT_TRUE((alone.*array).empty() ? std::isnan(value) : value == (alone.*array)[i]) << c << ", " << i;
+      }
+    }
+    known += alone.surfaceRadiance.empty() ? 0 : 1;
     solves += alone.solves;
     largest = std::max(largest, alone.relativeError);
   }
   EXPECT_FALSE(all.facePower.empty());
+  EXPECT_FALSE(all.surfaceRadiance.empty());
+  EXPECT_TRUE(known == 1 || known == 2) << known << " colours with surface radiance; some should have none";
   EXPECT_EQ(all.solves, solves);
   EXPECT_EQ(all.relativeError, largest);
   EXPECT_NE(all.settingsUsed[0].find(", "), std::string::npos) << all.settingsUsed[0]; // a number a colour

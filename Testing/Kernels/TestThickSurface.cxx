@@ -6,6 +6,8 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "Medium/BoxFaces.h"
 
+#include <limits>
+
 using namespace tyndall;
 using namespace viewing;
 
@@ -111,6 +113,35 @@ TEST_F(ThickSurface, SlabUnderASkyLooksLikeAHalfSpace)
       }
     }
   }
+}
+
+// A colour whose surface radiance is not known looks as without any, the others as with it.
+TEST_F(ThickSurface, SurfaceRadianceMayBeUnknownInOneColour)
+{
+  Illumination light;
+  light.sky = { 1.0, 1.0, 1.0 };
+  Scene slab = Slab(9.4, 0.99, light);
+  Solve(this->GetDevice(), slab, Endless);
+  const std::vector<float> fluence = slab.fluence, surface = slab.surface;
+  slab.fluence.clear();
+  for (const float value : fluence)
+  {
+    slab.fluence.insert(slab.fluence.end(), 3, value);
+  }
+  const Camera camera = Along(slab.grid, { 0.6, 0.0, -0.8 }, 1e-4);
+  const Picture all = slab.Seen(this->GetDevice(), camera);
+  slab.surface.clear();
+  const Picture none = slab.Seen(this->GetDevice(), camera);
+  for (const float value : surface)
+  {
+    slab.surface.insert(slab.surface.end(), { value, std::numeric_limits<float>::quiet_NaN(), value });
+  }
+  const Picture red = slab.Seen(this->GetDevice(), camera);
+  const std::size_t at = 3 * Middle(red);
+  EXPECT_GT(std::abs(all.radiance[at] - none.radiance[at]), 0.02f * all.radiance[at]);
+  EXPECT_EQ(red.radiance[at], all.radiance[at]);
+  EXPECT_EQ(red.radiance[at + 1], none.radiance[at + 1]);
+  EXPECT_EQ(red.radiance[at + 2], all.radiance[at + 2]);
 }
 
 // A beam of irradiance pi across it: albedo H(mu) H(mu0) mu0 / (4 (mu + mu0)).

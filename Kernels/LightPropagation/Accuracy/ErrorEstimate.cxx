@@ -266,7 +266,7 @@ void WriteSurfaceError(LightField& light, const LightField& coarse, const Coarse
   {
     const std::size_t k = parents[i / width] * width + i % width;
     light.surfaceError[i] =
-      means[k] > 0.0 ? static_cast<float>(std::sqrt(squares[k]) * light.surfaceRadiance[i] / means[k]) : 0.0f;
+      means[k] <= 0.0 ? 0.0f : static_cast<float>(std::sqrt(squares[k]) * light.surfaceRadiance[i] / means[k]);
   }
 }
 

@@ -256,7 +256,8 @@ std::array<double, 4> Missing(
   for (std::size_t n = 0; n < missing.size(); ++n)
   {
     const double leaves = light.surface.values[cell.number * components + n * channels + (channels == 3 ? channel : 0)];
-    missing[n] = part * (leaves - Marched(column, SurfaceCosines[n], std::max(step, FinestStep)));
+    missing[n] =
+      std::isnan(leaves) ? 0.0 : part * (leaves - Marched(column, SurfaceCosines[n], std::max(step, FinestStep)));
   }
   return missing;
 }

@@ -44,12 +44,13 @@ void CheckLightField(const Field& field, const char* name, const Grid& grid)
 }
 
 /// Checks an array on the cells of the box's faces.
+/// @param mayBeUnknown  whether values may be NaN
 /// @throws InvalidInput unless all values are finite
-void CheckFaces(const Field& faces, const char* name, const Grid& grid)
+void CheckFaces(const Field& faces, const char* name, const Grid& grid, bool mayBeUnknown)
 {
   for (std::size_t i = 0; faces.values && i < BoxFaceCellCount(grid) * faces.components; ++i)
   {
-    if (!std::isfinite(faces.values[i]))
+    if (!std::isfinite(faces.values[i]) && !(mayBeUnknown && std::isnan(faces.values[i])))
     {
       throw InvalidInput(std::string(name) + " is not finite in tuple " + std::to_string(i / faces.components) + ".");
     }
@@ -83,8 +84,8 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
         " components a voxel; a direction has 3.");
     CheckFinite(light.meanDirection, "mean_direction", grid);
   }
-  CheckFaces(light.surface, "surface_radiance", grid);
-  CheckFaces(light.facePower, "face_power", grid);
+  CheckFaces(light.surface, "surface_radiance", grid, true);
+  CheckFaces(light.facePower, "face_power", grid, false);
   // Whether uncollided light must be separated from the total fluence.
   const bool separates = settings.shadowRays != settings.singleScatteringOnly;
   const bool byMoments = light.scatteredMoments.values && !settings.singleScatteringOnly;

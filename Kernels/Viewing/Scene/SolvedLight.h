@@ -18,7 +18,7 @@ struct SolvedLight
   /// 1]. Null: not known.
   Field meanDirection;
   /// Outgoing radiance, W / (length^2 sr), in each cell of the box's faces (BoxFaces.h): 4 components, at the cosines
-  /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known.
+  /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known. NaN: not known in a cell and channel.
   Field surface = {};
   /// scatteredMoments: angular moments of scattered light, LightField::scatteredMoments, with (degree + 1)^2 components
   /// or 3 times as many. straightOn: the fraction of scattering that the solver of the moments treated as unscattered,
