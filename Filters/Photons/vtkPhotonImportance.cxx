@@ -183,7 +183,9 @@ tyndall::Importance vtkPhotonImportance::Find(const tyndall::PieceBlocks& pieces
   {
     return {};
   }
-  tyndall::KeptMarcher::Found found = this->Kept->Find(this, device, domain, own, nullptr, tyndall::MarchSettings{});
+  tyndall::MarchSettings march;
+  march.leaveOut = this->LeaveOut;
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this, device, domain, own, nullptr, march);
   tyndall::Importance importance =
     tyndall::FindImportance(*found.marcher, domain.Whole(), *light, settings, tyndall::MonitorOf(this));
   this->DeviceName = device->Name();
@@ -247,7 +249,7 @@ void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PilotDimensions: " << this->PilotDimensions[0] << " " << this->PilotDimensions[1] << " "
      << this->PilotDimensions[2] << "\n";
   os << indent << "Thresholds: " << (this->Thresholds == OWN ? "own" : "automatic") << "\n";
-  tyndallPrintMacro(GradientThreshold, LuminanceThreshold, Background, Seed, SkyColor, MemoryBudget, Even,
+  tyndallPrintMacro(GradientThreshold, LuminanceThreshold, Background, Seed, SkyColor, LeaveOut, MemoryBudget, Even,
     UsedGradientThreshold, UsedLuminanceThreshold, DeviceName);
   tyndall::PrintRun(os, indent, this);
 }

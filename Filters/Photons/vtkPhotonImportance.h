@@ -122,6 +122,12 @@ public:
   ///@}
 
   ///@{
+  /// Whether pilot photons skip what the medium does not need; LeftOut lists it. Default on; off: for comparison, with
+  /// the same map in more time.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// Device memory that the filter may use, MiB, including memory that it keeps between updates; a scene that needs
   /// more is an error, which states the required memory. Default 0: all memory of the device. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
@@ -173,6 +179,7 @@ private:
   int Seed = 0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
+  bool LeaveOut = true;
   int MemoryBudget = 0;
 
   /// Device limited by MemoryBudget; null if that is 0; outlives Kept, the cached medium.

@@ -129,6 +129,7 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
     static_cast<std::uint32_t>(filter->GetNoiseSeed()) };
   settings.voxelization.samples = filter->GetSupersamplingFactor();
   settings.filterSize = filter->GetFilterSize();
+  settings.leaveOut = filter->GetLeaveOut();
   return settings;
 }
 
@@ -241,6 +242,7 @@ vtkMeshVoxelizer::vtkMeshVoxelizer()
   const tyndall::RefractiveMediumSettings defaults;
   this->SupersamplingFactor = defaults.voxelization.samples;
   this->FilterSize = defaults.filterSize;
+  this->LeaveOut = defaults.leaveOut;
   // Replaces the default array of vtkImageAlgorithm, the active scalars, by `material_id`.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultNumbers);
 }
@@ -391,7 +393,7 @@ void vtkMeshVoxelizer::PrintSelf(ostream& os, vtkIndent indent)
   tyndallPrintMacro(SampleDimensions, ModelBounds, Margin, InsideIndex, OutsideIndex, InsideScattering,
     OutsideScattering, InsideAbsorption, OutsideAbsorption, InsideMeanCosine, OutsideMeanCosine);
   os << indent << "Materials: " << this->GetNumberOfMaterials() << "\n";
-  tyndallPrintMacro(IndexNoise, ScatteringNoise, NoiseSize, NoiseSeed, SupersamplingFactor, FilterSize, Device,
-    OccupiedVolume, UsedOutsideScattering, DeviceName);
+  tyndallPrintMacro(IndexNoise, ScatteringNoise, NoiseSize, NoiseSeed, SupersamplingFactor, FilterSize, LeaveOut,
+    Device, OccupiedVolume, UsedOutsideScattering, DeviceName);
   tyndall::PrintRun(os, indent, this);
 }

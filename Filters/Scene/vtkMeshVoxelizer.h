@@ -173,6 +173,12 @@ public:
   tyndallRangeMacro(FilterSize, int, 1, 65);
   ///@}
 
+  ///@{
+  /// Whether to skip smoothing and gradient of n if n is the same everywhere. Default on; off: for comparison, with the
+  /// same n, and a gradient of 0, in more time.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
   tyndallDeviceMacro();
 
   ///@{
@@ -218,6 +224,7 @@ private:
   int NoiseSeed = 0;
   int SupersamplingFactor;
   int FilterSize;
+  bool LeaveOut;
   std::string Device;
 
   std::vector<tyndall::Solid> ReadSolids(vtkInformationVector** inputs);

@@ -305,9 +305,11 @@ void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
   }
 }
 
-void AddProduct(vtkImageData* output, const char* name, const std::vector<float>& density, const Rgb& factor)
+/// @param leaveOut  whether one component is written if `factor` is grey
+void AddProduct(
+  vtkImageData* output, const char* name, const std::vector<float>& density, const Rgb& factor, bool leaveOut)
 {
-  const int components = IsGrey(factor) ? 1 : 3;
+  const int components = leaveOut && IsGrey(factor) ? 1 : 3;
   std::vector<float> values(density.size() * components);
   tyndall::InThreads(density.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -359,11 +361,13 @@ std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& reci
 
   tyndall::PassOn(input, output);
   tyndall::ForgetChoices(output);
-  AddProduct(output, "sigma_a", relative, recipe.sigma_a);
-  AddProduct(output, "sigma_s", relative, recipe.sigma_s);
-  if (recipe.emission != Rgb{})
+  const bool leaveOut = filter->GetLeaveOut();
+  AddProduct(output, "sigma_a", relative, recipe.sigma_a, leaveOut);
+  AddProduct(output, "sigma_s", relative, recipe.sigma_s, leaveOut);
+  if (recipe.emission != Rgb{} ||
+    (!leaveOut && !tyndall::ReadCells(output, "emission", tyndall::Need::Optional).IsThere()))
   {
-    AddProduct(output, "emission", relative, recipe.emission);
+    AddProduct(output, "emission", relative, recipe.emission, leaveOut);
   }
   tyndall::WritePhaseDescription(output, phase);
   const tyndall::FloatField scattering = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
@@ -558,7 +562,7 @@ void vtkParticipatingMedium::MakeMedium(
   this->DoubtLevelSet(domain, input, hasAll ? all : pieces.Held());
   this->NoteSize(domain.Whole(), tyndall::OpticalSizeOf(domain.Sum(sums), domain.Whole(), LargestExtinction(recipe)));
   pieces.KeepHeld(output);
-  tyndall::TellLeftOut(this, output, LeftOutOf(recipe));
+  tyndall::TellLeftOut(this, output, this->LeaveOut ? LeftOutOf(recipe) : std::vector<std::string>());
 }
 
 void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
@@ -568,7 +572,7 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Preset: " << (this->Preset == CUSTOM ? "custom" : GetPresetName(this->Preset)) << "\n";
   tyndallPrintMacro(MinimumDensity, MaximumDensity, LevelSet, ExtinctionScale, Albedo, PhaseFunction, MeanCosine);
   os << indent << "ChannelMeanCosines: " << this->ChannelMeanCosines.size() << " numbers\n";
-  tyndallPrintMacro(SecondMeanCosine, FirstPart, EmissionScale, EmissionColor, LengthUnit, PhysicalExtent,
+  tyndallPrintMacro(SecondMeanCosine, FirstPart, EmissionScale, EmissionColor, LengthUnit, LeaveOut, PhysicalExtent,
     OpticalThickness, MeanFreePath, MillimetresPerUnit);
   tyndall::PrintRun(os, indent, this);
 }

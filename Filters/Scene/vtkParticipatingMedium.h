@@ -220,6 +220,12 @@ public:
   ///@}
 
   ///@{
+  /// Whether a grey medium has arrays of one component, and a medium that does not emit has no array `emission`.
+  /// Default on; off: for comparison, three components and an emission of 0.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// Size of the complete dataset at the last update, the same on every rank: its edges with their unit of length, such
   /// as "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, dimensionless; and the
   /// mean free path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 if all are
@@ -280,6 +286,7 @@ private:
   double EmissionColor[3] = { 1.0, 1.0, 1.0 };
   int LengthUnit = AS_GIVEN;
   double MillimetresPerUnit = 1.0;
+  bool LeaveOut = true;
   std::string PhysicalExtent;
   double OpticalThickness = 0.0;
   double MeanFreePath = 0.0;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -136,6 +137,7 @@ struct PilotLight
   /// without photons. An origin is the column and row in the square grid on the photon plane, the plane from which the
   /// light's photons start.
   std::vector<float> originMean, originDeviation;
-  double seconds = 0.0; ///< duration, s
+  std::vector<std::string> leftOut; ///< what the march left out (LeftOut.h)
+  double seconds = 0.0;             ///< duration, s
 };
 }

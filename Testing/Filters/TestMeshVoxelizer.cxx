@@ -314,6 +314,13 @@ void ConstantIndexIsLeftOut(test::Claims& claims)
   claims.That(LeftOut(filter).find("ior_gradient") != std::string::npos &&
       std::string(filter->GetLeftOut()).find("ior_gradient") != std::string::npos,
     "left_out says so");
+  filter->LeaveOutOff();
+  filter->Update();
+  vtkDataArray* const gradient = Cells(filter, "ior_gradient");
+  claims.That(gradient && gradient->GetRange(-1)[1] < 1e-5, "a gradient of 0, where all is to be computed");
+  claims.Near(Cells(filter, "ior")->GetRange()[0], 1.0, 1e-6, "the lowest n, smoothed");
+  claims.Near(Cells(filter, "ior")->GetRange()[1], 1.0, 1e-6, "the highest n, smoothed");
+  claims.That(LeftOut(filter).empty(), "and nothing is left out");
 }
 
 /// What is asked for, by an extent or a piece, has the values of the whole, and no more of it is made.

@@ -1,5 +1,6 @@
 #include "MediumScene.h"
 
+#include "vtkLightPropagationMaps.h"
 #include "vtkParticipatingMedium.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -204,6 +205,46 @@ void UnitsOfLengthHaveNames(test::Claims& claims)
   claims.That(filter->GetPhysicalExtent() == std::string("1 x 0.75 x 0.5 m"), "in the unit that fits");
   filter->SetMillimetresPerUnit(1000.0);
   claims.Near(scattering(vtkParticipatingMedium::AS_GIVEN), inMetres, 0.0, "as MillimetresPerUnit says");
+}
+
+void WhatIsNotNeededCanBeWrittenAllTheSame(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  filter->SetInputDataObject(Ramp());
+  filter->SetMaximumDensity(2.0);
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputConnection(filter->GetOutputPort());
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  const auto fluence = [&] {
+    maps->Update();
+    std::vector<double> values;
+    for (vtkIdType cell = 0; cell < 4; ++cell)
+    {
+      values.push_back(maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(cell, 0));
+    }
+    return values;
+  };
+  const std::vector<double> less = fluence();
+  claims.Near(ComponentsOf(filter, "sigma_s"), 1, 0, "components of a grey medium");
+  claims.Near(ComponentsOf(filter, "emission"), 0, 0, "emission of a medium that does not emit");
+  filter->LeaveOutOff();
+  const std::vector<double> all = fluence();
+  for (const char* name : { "sigma_a", "sigma_s", "emission" })
+  {
+    claims.Near(ComponentsOf(filter, name), 3, 0, std::string("components where all is to be written: ") + name);
+  }
+  claims.Near(At(filter, "emission", 3, 2), 0.0, 0.0, "emission");
+  claims.That(std::string(filter->GetLeftOut()).empty(), "nothing is left out");
+  for (std::size_t cell = 0; cell < 4; ++cell)
+  {
+    claims.Near(all[cell] / less[cell], 1.0, 1e-5, "the same light");
+  }
+  const auto image = Ramp();
+  test::AddCells(image, "emission", 2.0);
+  image->GetCellData()->SetActiveScalars("density");
+  filter->SetInputDataObject(image);
+  filter->Update();
+  claims.Near(At(filter, "emission", 3), 2.0, 0.0, "the input's own emission");
 }
 
 void WarnsWhereItIsTooThinOrTooThick(test::Claims& claims)
@@ -565,6 +606,7 @@ int TestParticipatingMedium(int, char*[])
   ColourMakesThreeComponents(claims);
   PresetsAreRealMedia(claims);
   UnitsOfLengthHaveNames(claims);
+  WhatIsNotNeededCanBeWrittenAllTheSame(claims);
   WarnsWhereItIsTooThinOrTooThick(claims);
   TheOutputSaysHowItScatters(claims);
   ATableIsThePhaseFunction(claims);

@@ -4,6 +4,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace
@@ -177,6 +179,37 @@ void EvenLightIsSaid(test::Claims& claims)
   claims.That(same, "an even map leaves photons where they are");
 }
 
+void WhatIsNotNeededCanBeComputedAllTheSame(test::Claims& claims)
+{
+  Pipeline scene(test::MakeMedium({ { 16, 16, 16 } }, 0.0, 0.05));
+  scene.importance->SetThresholds(vtkPhotonImportance::OWN);
+  scene.importance->SetGradientThreshold(1e30);
+  scene.importance->Update();
+  const std::vector<double> first = Values(scene.Pilot(), "fluence");
+  scene.importance->SetLuminanceThreshold(0.7 * *std::max_element(first.begin(), first.end()));
+  const auto says = [&](const char* text) {
+    return std::string(scene.importance->GetLeftOut()).find(text) != std::string::npos;
+  };
+  scene.importance->Update();
+  const std::vector<double> map = Values(scene.Map(), "importance"), light = Values(scene.Pilot(), "fluence");
+  claims.That(says("refraction:") && says("absorption:"), "pilot photons leave out refraction and absorption");
+  claims.That(!scene.importance->GetEven(), "dark cells are in the map");
+  scene.importance->LeaveOutOff();
+  scene.importance->Update();
+  claims.That(!says("refraction:") && !says("absorption:"), "and do not, where all is to be computed");
+  const auto farthest = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double most = a.size() == b.size() ? 0.0 : 1e30, largest = 0.0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    {
+      most = std::max(most, std::abs(a[i] - b[i]));
+      largest = std::max(largest, std::abs(b[i]));
+    }
+    return most / largest;
+  };
+  claims.Near(farthest(Values(scene.Pilot(), "fluence"), light), 0.0, 1e-5, "difference of the pilot light");
+  claims.Near(farthest(Values(scene.Map(), "importance"), map), 0.0, 1e-5, "difference of the map");
+}
+
 void AnotherNumberOfLightsIsFollowed(test::Claims& claims)
 {
   Pipeline scene(test::GlassBall(16));
@@ -266,6 +299,7 @@ int TestPhotonImportance(int, char*[])
     TheLightsPowerChangesNothing(claims);
     OwnThresholdsAreUsed(claims);
     EvenLightIsSaid(claims);
+    WhatIsNotNeededCanBeComputedAllTheSame(claims);
     AnotherNumberOfLightsIsFollowed(claims);
     FewPilotPhotonsAreEnough(claims);
     NoPilotPhotonsAreAnError(claims);

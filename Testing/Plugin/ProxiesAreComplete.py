@@ -84,6 +84,8 @@ def faults_of_groups(proxy):
 COMPUTING = """ParticipatingMedium MeshVoxelizer RefractionOctree PhotonImportance PhotonEmitter PhotonMarcher
 PhotonReconstruction LPMPropagate LPMCollect LightPropagationMaps DiscreteOrdinates LatticeBoltzmannLighting
 MediumRayCaster SeparablePhaseFunction SolverComparison""".split()
+# Those that could not compute what they leave out.
+WITHOUT_SWITCH = "PhotonEmitter LPMCollect SeparablePhaseFunction SolverComparison".split()
 
 
 def faults_of_runs(proxy):
@@ -92,6 +94,8 @@ def faults_of_runs(proxy):
         yield "it does not show its run time (Seconds)"
     if proxy.get("name") in COMPUTING and "LeftOut" not in names:
         yield "it does not show what it leaves out (LeftOut)"
+    if proxy.get("name") in COMPUTING and ("LeaveOut" in names) == (proxy.get("name") in WITHOUT_SWITCH):
+        yield "whether it has the switch LeaveOut differs from numerics.md, section 10, Omitted terms"
 
 
 def faults_of_proxy(proxy):

@@ -1,6 +1,7 @@
 #include "Photons/Importance/PhotonImportance.h"
 
 #include "Device/Errors.h"
+#include "Light/LeftOut.h"
 #include "Numerics/NumberText.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
@@ -336,6 +337,7 @@ Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumi
   {
     lights.push_back(marcher.Gather(pilot.photons, pilot.origins, settings.cells, monitor));
     Add(lights.back(), importance.pilot);
+    AddMissing(importance.leftOut, lights.back().leftOut);
   }
   const std::vector<double> luminance = LuminanceOf(importance.pilot);
   importance.gradient = GradientOf(luminance, importance.pilot.grid);

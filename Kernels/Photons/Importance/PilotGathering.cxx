@@ -3,6 +3,7 @@
 #include "Device/Clock.h"
 #include "Device/Sizes.h"
 #include "Distribution/Rounds.h"
+#include "Photons/Marching/MarchedLight.h"
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
 
@@ -202,6 +203,7 @@ PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std:
   domain.Collective([&] { sums = run ? SumOfCopies(memory, into.Stride()) : sums; });
   const double diagonal = std::hypot(whole.spacing[0], whole.spacing[1], whole.spacing[2]);
   PutCells(SumExactly(domain.Comm(), sums), whole, all, all.unit * diagonal, light);
+  light.leftOut = LeftOutOf(this->Traits, this->Settings, all);
   light.seconds = ClockSeconds() - start;
   return light;
 }

@@ -265,6 +265,24 @@ void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& resul
   }
 }
 
+std::vector<std::string> LeftOutOf(
+  const MarchTraits& traits, const MarchSettings& settings, const PackedPhotons& packed)
+{
+  std::vector<std::string> texts;
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      texts.emplace_back(text);
+    }
+  };
+  say(settings.leaveOut && !traits.index.Varies(), left_out::ConstantIndex);
+  say(packed.channels == 1, packed.grey ? left_out::Grey : left_out::OneColour);
+  say(packed.channels == 3 && traits.Channels(settings) == 1, left_out::GreyExtinction);
+  say(settings.leaveOut && !traits.scatters, left_out::NoScattering);
+  say(settings.leaveOut && !traits.absorbs, left_out::NoAbsorption);
+  return texts;
+}
+
 void SayWhatIsLeftOut(const MarchMedium& through, const PackedPhotons& packed, LightField& light)
 {
   const auto say = [&](bool condition, const char* text) {
@@ -275,14 +293,9 @@ void SayWhatIsLeftOut(const MarchMedium& through, const PackedPhotons& packed, L
   };
   say(through.settings.maximumOrders == 1,
     "scattered light: fluence is what comes from the lights without being scattered");
-  const bool leaveOut = through.settings.leaveOut;
   say(through.traits.emits, "emission: photons carry the light of lights only");
-  say(!through.bends, left_out::ConstantIndex);
   say(through.bends && !through.hasLevels, "octree: none was given, paths go by steps of the same length");
-  say(packed.channels == 1, packed.grey ? left_out::Grey : left_out::OneColour);
-  say(packed.channels == 3 && through.channels == 1, left_out::GreyExtinction);
-  say(leaveOut && !through.traits.scatters, left_out::NoScattering);
-  say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
+  AddMissing(light.leftOut, LeftOutOf(through.traits, through.settings, packed));
   say(through.bricks.AreThere(), "light voxel by voxel in empty space: it is kept by bricks of 8x8x8 voxels there");
   say(!through.settings.meanDirection, "mean direction: it was not asked for");
 }

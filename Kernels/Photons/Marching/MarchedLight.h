@@ -64,6 +64,10 @@ void AddUpScattered(const Domain& domain, PhotonLight& result);
 /// is 1.
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result);
 
+/// Texts of left_out for what a march leaves out because of traits of the medium and of the photons.
+std::vector<std::string> LeftOutOf(
+  const MarchTraits& traits, const MarchSettings& settings, const PackedPhotons& packed);
+
 void SayWhatIsLeftOut(const MarchMedium& medium, const PackedPhotons& packed, LightField& light);
 
 /// Indices of the photons in one of the batches from which the standard error is estimated. From each group of

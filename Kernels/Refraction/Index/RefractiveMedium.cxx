@@ -195,10 +195,10 @@ std::string WithoutExtent(const std::vector<Solid>& solids)
 /// Properties of a medium that follow from its materials alone, without the geometry.
 struct Composition
 {
-  bool grey = true;      ///< whether no material has colour
-  bool variedG = false;  ///< whether scattering materials differ in their mean cosines
-  bool evenIndex = true; ///< whether n is the same in all solids and outside
-  double g = 0.0;        ///< common mean cosine of the scattering materials, if they do not differ
+  bool grey = true;       ///< whether no material has colour
+  bool variedG = false;   ///< whether scattering materials differ in their mean cosines
+  bool skipsIndex = true; ///< whether n is not smoothed, because it is the same in all solids and outside
+  double g = 0.0;         ///< common mean cosine of the scattering materials, if they do not differ
 };
 
 Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
@@ -211,7 +211,7 @@ Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMedi
   Composition composition;
   composition.variedG = MeanCosineVaries(materials, composition.g);
   composition.grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
-  composition.evenIndex = IndexIsEven(solids, settings);
+  composition.skipsIndex = settings.leaveOut && IndexIsEven(solids, settings);
   return composition;
 }
 
@@ -360,9 +360,9 @@ private:
 
 /// The box `part` with the halo on which its values depend. The halo is half the width of the filter, one voxel for the
 /// gradient, and one voxel because the counts of samples inside solids are not exact in the outermost voxels of a box.
-VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
+VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool skipsIndex)
 {
-  return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
+  return Grown(part, skipsIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
 }
 
 /// Crops the arrays of a medium over the box `box` to the box `part`.
@@ -396,8 +396,8 @@ void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMedi
   const PartOfBox& part, const Composition& composition, const Monitor& monitor, VoxelizedPart& result)
 {
   RefractiveMedium& medium = result.medium;
-  const VoxelBox box = BoxAround(part.made, settings, composition.evenIndex);
-  CheckMemory(device, settings, box.size, (composition.variedG ? 3 : 2) * medium.components, !composition.evenIndex);
+  const VoxelBox box = BoxAround(part.made, settings, composition.skipsIndex);
+  CheckMemory(device, settings, box.size, (composition.variedG ? 3 : 2) * medium.components, !composition.skipsIndex);
   Grid grid = settings.grid;
   grid.size = box.size;
   Buffer<float> index(device, grid.VoxelCount(), "ior");
@@ -405,7 +405,7 @@ void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMedi
   result.findings.windings = CountSamplesInside(
     device, settings.grid, { box, part.own }, Oriented(solids, result.topologies), settings.voxelization,
     [&](const SamplesInside& inside) { mixer.Take(inside); }, OfPart(monitor, 0.0, 0.8));
-  if (!composition.evenIndex)
+  if (!composition.skipsIndex)
   {
     SmoothIndex(device, grid, settings.filterSize, index);
     medium.ior = index.Read();
@@ -501,7 +501,7 @@ RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const
     medium.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
                               "box with the meshes' bounds.");
   }
-  if (all.empty || IndexIsEven(solids, settings))
+  if (settings.leaveOut && (all.empty || IndexIsEven(solids, settings)))
   {
     medium.ior.clear();
     medium.iorGradient.clear();

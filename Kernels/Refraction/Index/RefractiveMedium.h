@@ -55,15 +55,16 @@ struct RefractiveMediumSettings
   Material outside; ///< material outside the solids
   Perturbation perturbation;
   VoxelizationSettings voxelization;
-  int filterSize = 9; ///< width of the filter that smooths n, in voxels; see SmoothIndex
+  int filterSize = 9;   ///< width of the filter that smooths n, in voxels; see SmoothIndex
+  bool leaveOut = true; ///< whether n and its gradient are left empty if n is the same everywhere
 };
 
 /// A voxelised scene of solids in a box. In all arrays x varies fastest; leftOut says which arrays are empty, and why.
 struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< fraction of the voxel's volume inside any solid, [0, 1]
-  std::vector<float> ior;         ///< refractive index n, smoothed; empty if n is the same everywhere
-  std::vector<float> iorGradient; ///< gradient of n, 1/length, 3 values per voxel; empty if n is the same everywhere
+  std::vector<float> ior;         ///< refractive index n, smoothed; empty if it was left out
+  std::vector<float> iorGradient; ///< gradient of n, 1/length, 3 values per voxel; empty if it was left out
   std::vector<float> sigma_a;     ///< absorption coefficient, 1/length, `components` values per voxel
   std::vector<float> sigma_s;     ///< scattering coefficient, 1/length, `components` values per voxel
   int components = 1;             ///< components of sigma_a, sigma_s and gByVoxel: 3 if any material has colour, else 1
