@@ -247,8 +247,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of timed runs, whose least time is reported, after one run that is not timed; 5 more, in turns, of settings
-  /// that take less than 50 ms; fewer if TimeBudget does not allow them. Default 3, valid [1, 100].
+  /// Number of timed runs, whose least time is reported, after one run that is not timed; 5 to 25 more, in turns, of
+  /// settings that take less than 50 ms; fewer if TimeBudget does not allow them. Default 3, valid [1, 100].
   tyndallRangeMacro(Repeats, int, 1, 100);
   ///@}
 

@@ -69,8 +69,8 @@ struct ComparisonSettings
   std::vector<ComparedMethod> methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
-  /// Timed runs per setting, after a run that compiles kernels. Settings that take less than 50 ms get 5 more runs, in
-  /// turns. Fewer if the time budget does not allow them.
+  /// Timed runs per setting, after a run that compiles kernels. Settings that take less than 50 ms get 5 to 25 more
+  /// runs, in turns. Fewer if the time budget does not allow them.
   int repeats = 3;
   /// Total time budget, seconds. Half of it is for the reference, unless the reference is given; the methods share the
   /// rest. A run that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence
