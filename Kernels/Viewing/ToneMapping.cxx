@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
 #include "Numerics/NumberText.h"
+#include "Numerics/Srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,19 +22,9 @@ constexpr std::size_t PixelsOfThread = 32768; ///< smallest number of pixels per
 /// becomes NaN.
 constexpr double LargestExposure = 1e30;
 
-double EncodeSrgb(double linear)
-{
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 double Filmic(double x)
 {
   return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
-}
-
-double DecodeSrgb(double encoded)
-{
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 /// Inverse y -> x of the curve Filmic, for y in [0, 1]: the positive root of a quadratic equation.
