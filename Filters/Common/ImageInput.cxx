@@ -59,6 +59,13 @@ vtkInformationIntegerKey* ForImages()
   return key;
 }
 
+/// Key in an image's information: its cells are voxels around the points of another image (PointsAsVoxels).
+vtkInformationIntegerKey* AroundPoints()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("AROUND_POINTS", "Tyndall");
+  return key;
+}
+
 /// Key in a port's information: names of the arrays that the filter reads from the image at this port (ReadsVoxels).
 vtkInformationStringVectorKey* ChosenArrays()
 {
@@ -408,7 +415,13 @@ vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points)
   FlagVoxels(points, voxels);
   voxels->SetFieldData(points->GetFieldData());
   voxels->GetInformation()->CopyEntry(points->GetInformation(), vtkDataObject::DATA_TIME_STEP());
+  voxels->GetInformation()->Set(AroundPoints(), 1);
   return voxels;
+}
+
+bool AreMadeAroundPoints(vtkImageData* voxels)
+{
+  return voxels->GetInformation()->Has(AroundPoints()) != 0;
 }
 
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays)

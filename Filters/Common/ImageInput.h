@@ -60,6 +60,8 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
 /// Makes an image with one voxel around each point: point arrays become cell arrays, cell arrays are dropped. An axis
 /// with one point has one voxel.
 vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points);
+/// Whether an image was made by PointsAsVoxels.
+bool AreMadeAroundPoints(vtkImageData* voxels);
 
 /// Records the point arrays that a filter averages to cells because it reads cell arrays of the same image.
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);

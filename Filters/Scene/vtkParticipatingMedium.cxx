@@ -14,12 +14,15 @@
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
+#include "Scene/VolumeMedium.h"
 
+#include "vtkColorTransferFunction.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -345,22 +348,17 @@ const tyndall::MediumPreset* PresetOf(int preset)
   return isThere ? &tyndall::MediumPresets()[preset - 1] : nullptr;
 }
 
-/// Computes the output of this rank from its piece of the density.
+/// Adds the arrays of a medium of a density.
 /// @return the relative density of each voxel
-std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
-  vtkInformationVector* phaseTable, vtkImageData* output)
+std::vector<float> AddMediumOfDensity(
+  vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input, vtkImageData* output)
 {
-  const tyndall::PhaseDescription phase = DescriptionOf(filter, recipe.g, vtkTable::GetData(phaseTable));
   const tyndall::FloatField density = tyndall::ReadChosenCells(filter, 0, input, "", tyndall::Need::Required, { 1 });
   const tyndall::Grid grid = tyndall::GridOf(input);
   std::vector<float> relative = filter->GetLevelSet()
     ? FogOfLevelSet(density, grid)
     : RelativeDensity(density, grid, filter->GetMinimumDensity(), filter->GetMaximumDensity());
-
   EmptyHidden(input, relative);
-
-  tyndall::PassOn(input, output);
-  tyndall::ForgetChoices(output);
   const bool leaveOut = filter->GetLeaveOut();
   AddProduct(output, "sigma_a", relative, recipe.sigma_a, leaveOut);
   AddProduct(output, "sigma_s", relative, recipe.sigma_s, leaveOut);
@@ -369,6 +367,37 @@ std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& reci
   {
     AddProduct(output, "emission", relative, recipe.emission, leaveOut);
   }
+  return relative;
+}
+
+/// The transfer functions, and what a medium takes of them.
+tyndall::VolumeAppearance AppearanceOf(vtkParticipatingMedium* filter, const tyndall::PhaseDescription& phase)
+{
+  tyndall::VolumeAppearance appearance;
+  appearance.property = filter->GetVolumeProperty();
+  appearance.colorIsEmission = filter->GetColorMeans() == vtkParticipatingMedium::EMISSION;
+  appearance.factor = filter->GetExtinctionScale();
+  appearance.vectorMode = filter->GetVectorMode();
+  appearance.vectorComponent = filter->GetVectorComponent();
+  const std::array<tyndall::PhaseFunction, 3> phases = phase.Functions();
+  for (int c = 0; c < 3; ++c)
+  {
+    appearance.g[c] = phases[c].MeanCosine();
+  }
+  return appearance;
+}
+
+/// Computes the output of this rank from its piece of the input.
+/// @return values of voxels to which the extinction is proportional: by recipe.sigma_t, or with transfer functions by 1
+std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
+  vtkInformationVector* phaseTable, vtkImageData* output)
+{
+  const tyndall::PhaseDescription phase = DescriptionOf(filter, recipe.g, vtkTable::GetData(phaseTable));
+  tyndall::PassOn(input, output);
+  tyndall::ForgetChoices(output);
+  std::vector<float> relative = filter->GetUseTransferFunctions()
+    ? tyndall::AddMediumOfVolume(filter, AppearanceOf(filter, phase), input, output)
+    : AddMediumOfDensity(filter, recipe, input, output);
   tyndall::WritePhaseDescription(output, phase);
   const tyndall::FloatField scattering = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
   if (const tyndall::FloatField g = tyndall::ReadMeanCosines(output, scattering); g.IsThere())
@@ -401,6 +430,55 @@ const char* vtkParticipatingMedium::GetPresetDensity(int preset)
 const char* vtkParticipatingMedium::GetPresetSource(int preset)
 {
   return PresetOf(preset) ? PresetOf(preset)->source : "";
+}
+
+void vtkParticipatingMedium::SetVolumeProperty(vtkVolumeProperty* property)
+{
+  if (this->VolumeProperty != property)
+  {
+    this->VolumeProperty = property ? vtk::MakeSmartPointer(property) : vtkSmartPointer<vtkVolumeProperty>::New();
+    this->HasFunctions = property != nullptr;
+    this->Modified();
+  }
+}
+
+void vtkParticipatingMedium::SetLookupTable(vtkScalarsToColors* colors)
+{
+  auto* const function = vtkColorTransferFunction::SafeDownCast(colors);
+  if (colors && !function)
+  {
+    vtkErrorMacro("The colours are a " << colors->GetClassName() << "; they must be a vtkColorTransferFunction.");
+    return;
+  }
+  this->HasFunctions = this->HasFunctions || function;
+  this->VolumeProperty->SetColor(function);
+}
+
+void vtkParticipatingMedium::SetScalarOpacityFunction(vtkPiecewiseFunction* opacities)
+{
+  this->HasFunctions = this->HasFunctions || opacities;
+  this->VolumeProperty->SetScalarOpacity(opacities);
+}
+
+void vtkParticipatingMedium::SetScalarOpacityUnitDistance(double distance)
+{
+  this->VolumeProperty->SetScalarOpacityUnitDistance(distance);
+}
+
+void vtkParticipatingMedium::SetMapScalars(bool independent)
+{
+  this->VolumeProperty->SetIndependentComponents(independent ? 1 : 0);
+}
+
+void vtkParticipatingMedium::SetInterpolateScalars(bool linear)
+{
+  this->VolumeProperty->SetInterpolationType(linear ? VTK_LINEAR_INTERPOLATION : VTK_NEAREST_INTERPOLATION);
+}
+
+vtkMTimeType vtkParticipatingMedium::GetMTime()
+{
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  return this->UseTransferFunctions ? std::max(own, this->VolumeProperty->GetMTime()) : own;
 }
 
 void vtkParticipatingMedium::SetChannelMeanCosines(double red, double green, double blue)
@@ -450,12 +528,13 @@ int vtkParticipatingMedium::RequestInformation(
 }
 
 /// Requests the piece of the density that matches the requested output if each rank requests its own piece; otherwise
-/// requests the complete density, whose size PhysicalExtent reports.
+/// requests the complete density, whose size PhysicalExtent reports. Transfer functions need the scalars of
+/// neighbouring voxels, too, and therefore the complete image.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  if (tyndall::EachAsksForItsPiece(request, outputs))
+  if (!this->UseTransferFunctions && tyndall::EachAsksForItsPiece(request, outputs))
   {
     tyndall::AskForSame(request, inputs[DENSITY], outputs);
   }
@@ -480,8 +559,10 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
     vtkWarningMacro("The medium's optical thickness is "
       << Text("%g", size.thickness) << " at most, along x, y or z: "
       << (thin ? "hardly any light meets it" : "no light comes deeper than its outermost voxels") << ". Look at "
-      << (this->Preset == CUSTOM ? "ExtinctionScale and MaximumDensity"
-                                 : "LengthUnit (the dataset is " + this->PhysicalExtent + " large) and MaximumDensity")
+      << (this->UseTransferFunctions ? "the opacities, ExtinctionScale and ScalarOpacityUnitDistance"
+             : this->Preset == CUSTOM
+             ? "ExtinctionScale and MaximumDensity"
+             : "LengthUnit (the dataset is " + this->PhysicalExtent + " large) and MaximumDensity")
       << ".");
   }
 }
@@ -492,7 +573,7 @@ void vtkParticipatingMedium::DoubtLevelSet(
   const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box)
 {
   constexpr double small = 0.01; // negative values down to minus this fraction of the largest value are noise about 0
-  if (this->LevelSet)
+  if (this->LevelSet || this->UseTransferFunctions)
   {
     return;
   }
@@ -523,7 +604,7 @@ int vtkParticipatingMedium::RequestData(
   this->PhysicalExtent.clear();
   this->OpticalThickness = 0.0;
   this->MeanFreePath = 0.0;
-  const bool asksForPiece = tyndall::EachAsksForItsPiece(request, outputs);
+  const bool asksForPiece = !this->UseTransferFunctions && tyndall::EachAsksForItsPiece(request, outputs);
   tyndall::WorkOnSubdomains work;
   work.port = DENSITY;
   work.wholeOnEachRank = true; // each cell depends only on its own density
@@ -549,6 +630,10 @@ void vtkParticipatingMedium::MakeMedium(
   Recipe recipe;
   std::vector<double> sums;
   domain.Collective([&] {
+    Require(!this->UseTransferFunctions || this->HasFunctions,
+      "There are no transfer functions: color the input by an array as a Volume before UseTransferFunctions is "
+      "switched "
+      "on, or set LookupTable and ScalarOpacityFunction, or VolumeProperty.");
     recipe = RecipeOf(this, this->ChannelMeanCosines);
     std::vector<float> relative;
     if (pieces.HasOwn() || !pieces.IsDecomposed())
@@ -560,15 +645,19 @@ void vtkParticipatingMedium::MakeMedium(
   const tyndall::VoxelBox all = { { 0, 0, 0 }, domain.Whole().size };
   const bool hasAll = input && input->GetNumberOfCells() == static_cast<vtkIdType>(all.VoxelCount());
   this->DoubtLevelSet(domain, input, hasAll ? all : pieces.Held());
-  this->NoteSize(domain.Whole(), tyndall::OpticalSizeOf(domain.Sum(sums), domain.Whole(), LargestExtinction(recipe)));
+  const double extinction = this->UseTransferFunctions ? 1.0 : LargestExtinction(recipe);
+  this->NoteSize(domain.Whole(), tyndall::OpticalSizeOf(domain.Sum(sums), domain.Whole(), extinction));
   pieces.KeepHeld(output);
-  tyndall::TellLeftOut(this, output, this->LeaveOut ? LeftOutOf(recipe) : std::vector<std::string>());
+  const bool leavesOut = this->LeaveOut && !this->UseTransferFunctions;
+  tyndall::TellLeftOut(this, output, leavesOut ? LeftOutOf(recipe) : std::vector<std::string>());
 }
 
 void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(PointData);
+  tyndallPrintMacro(PointData, UseTransferFunctions, VectorMode, VectorComponent, ColorMeans);
+  os << indent << "VolumeProperty:\n";
+  this->VolumeProperty->PrintSelf(os, indent.GetNextIndent());
   os << indent << "Preset: " << (this->Preset == CUSTOM ? "custom" : GetPresetName(this->Preset)) << "\n";
   tyndallPrintMacro(MinimumDensity, MaximumDensity, LevelSet, ExtinctionScale, Albedo, PhaseFunction, MeanCosine);
   os << indent << "ChannelMeanCosines: " << this->ChannelMeanCosines.size() << " numbers\n";

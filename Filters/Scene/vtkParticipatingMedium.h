@@ -3,10 +3,15 @@
 
 #include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
+#include "vtkSmartPointer.h"
 #include "vtkTyndallModule.h" // for export macro
+#include "vtkVolumeProperty.h"
 
 #include <string>
 #include <vector>
+
+class vtkPiecewiseFunction;
+class vtkScalarsToColors;
 
 namespace tyndall
 {
@@ -53,6 +58,19 @@ struct VoxelBox;
  * A preset provides measured sigma_s, sigma_a (1/mm at rho = 1) and g of a medium, which replace Albedo and MeanCosine;
  * ExtinctionScale multiplies the coefficients (1: as measured), and LengthUnit or MillimetresPerUnit sets the length of
  * the dataset's unit.
+ *
+ * With UseTransferFunctions the medium is made of the colours and opacities with which a volume is rendered
+ * (numerics.md, section 2.4). With the opacity alpha(s) per unit distance u, the colour c(s) and the shortest spacing
+ * h:
+ *
+ *     sigma_t = ExtinctionScale min(-ln(1 - alpha(s)) / u, 16 / h)
+ *
+ * and with ColorMeans ALBEDO the albedo is that of a half-space that shows the colour c along its normal in uniform
+ * light of radiance 1, at most 0.9999 by similarity; with EMISSION, sigma_s is 0 and emission is sigma_t c, c decoded
+ * from sRGB. The coefficients of a voxel are their means over the scalars that are interpolated in it, as vtkVolume
+ * interpolates them (a new vtkVolumeProperty takes the nearest scalar instead): between points, empty beyond the
+ * outermost ones; between centres of cells, constant beyond. Where scalars are not numbers, or hidden, the medium is
+ * empty. Density, preset, albedo and emission properties are then ignored.
  *
  * An optical thickness above 0 but below 0.01, or above 1e6, causes a warning, because it is seldom intended.
  *
@@ -107,6 +125,58 @@ public:
   ///@}
 
   ///@{
+  /// Whether the medium is made of the transfer functions of VolumeProperty, instead of a density. Default off.
+  tyndallFlagMacro(UseTransferFunctions);
+  ///@}
+
+  ///@{
+  /// Colours, opacities, unit distance, components, their weights and interpolation for UseTransferFunctions, as
+  /// vtkVolume uses them. Never null; the default is that of a new vtkVolumeProperty. Transfer functions of two
+  /// dimensions and gradient opacity are errors; shading is ignored. Null replaces it by a new one.
+  void SetVolumeProperty(vtkVolumeProperty* property);
+  vtkVolumeProperty* GetVolumeProperty() { return this->VolumeProperty; }
+  ///@}
+
+  ///@{
+  /// Set VolumeProperty's colours (a vtkColorTransferFunction, else an error), opacities, unit distance (length, above
+  /// 0, default 1), whether scalars of several components are independent (MapScalars), and whether scalars are
+  /// interpolated linearly.
+  void SetLookupTable(vtkScalarsToColors* colors);
+  void SetScalarOpacityFunction(vtkPiecewiseFunction* opacities);
+  void SetScalarOpacityUnitDistance(double distance);
+  void SetMapScalars(bool independent);
+  void SetInterpolateScalars(bool linear);
+  ///@}
+
+  /// Which scalar independent components have, for SetVectorMode.
+  enum VectorModes
+  {
+    ALL_COMPONENTS = -1, ///< each component has its own transfer functions
+    MAGNITUDE = 0,
+    COMPONENT = 1, ///< the component VectorComponent
+    AS_COLORS = 2  ///< vector mode and component of the colours; those of a new vtkColorTransferFunction: component 0
+  };
+
+  ///@{
+  /// The scalar of arrays of several components for UseTransferFunctions, one of VectorModes, unless components are
+  /// dependent; and the component, from 0. Defaults AS_COLORS, 0.
+  tyndallRangeMacro(VectorMode, int, ALL_COMPONENTS, AS_COLORS);
+  tyndallRangeMacro(VectorComponent, int, 0, VTK_INT_MAX);
+  ///@}
+
+  /// What colours mean, for SetColorMeans.
+  enum ColorMeanings
+  {
+    ALBEDO = 0,  ///< scattered light: the colour of a thick medium in white light
+    EMISSION = 1 ///< light that the medium emits, such as a flame or a plasma: the radiance of a thick medium
+  };
+
+  ///@{
+  /// Meaning of the colours for UseTransferFunctions, one of ColorMeanings. Default ALBEDO.
+  tyndallRangeMacro(ColorMeans, int, ALBEDO, EMISSION);
+  ///@}
+
+  ///@{
   /// Density that has relative density 0: voxels of this or a smaller density are vacuum. Default 0.
   tyndallRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
@@ -125,8 +195,8 @@ public:
   ///@}
 
   ///@{
-  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset, a factor of the preset's
-  /// coefficients. Default 1, valid [0, infinity).
+  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset or transfer functions, a factor
+  /// of their coefficients. Default 1, valid [0, infinity).
   tyndallRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
   ///@}
 
@@ -243,6 +313,9 @@ public:
   tyndallLeftOutMacro();
   ///@}
 
+  /// Time of the latest modification of this object, or of VolumeProperty if it is used.
+  vtkMTimeType GetMTime() override;
+
 protected:
   enum Inputs
   {
@@ -270,6 +343,12 @@ private:
   void DoubtLevelSet(const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box);
   void MakeMedium(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output);
 
+  bool UseTransferFunctions = false;
+  vtkSmartPointer<vtkVolumeProperty> VolumeProperty = vtkSmartPointer<vtkVolumeProperty>::New();
+  bool HasFunctions = false; ///< whether VolumeProperty, or any of its functions, has been set
+  int VectorMode = AS_COLORS;
+  int VectorComponent = 0;
+  int ColorMeans = ALBEDO;
   int Preset = CUSTOM;
   int PointData = VOXELS_AROUND_POINTS;
   double MinimumDensity = 0.0;
