@@ -2,6 +2,7 @@
 
 #include "BlocksOfRanks.h"
 #include "CasterProperties.h"
+#include "Common/CellArrays.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Clock.h"
@@ -11,14 +12,17 @@
 #include "Viewing/Blocks/ShownBlock.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/ToneMapping.h"
+#include "VolumeLight.h"
 #include "vtkMediumRayCaster.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkLightPropagationMaps.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkParticipatingMedium.h"
 #include "vtkRenderer.h"
 #include "vtkTrivialProducer.h"
 #include "vtkVolume.h"
@@ -164,7 +168,8 @@ struct vtkLitVolumeMapper::Pieces
 vtkStandardNewMacro(vtkLitVolumeMapper);
 
 vtkLitVolumeMapper::vtkLitVolumeMapper()
-  : Overlay(std::make_unique<tyndall::PictureOverlay>())
+  : OwnLight(std::make_unique<tyndall::VolumeLight>())
+  , Overlay(std::make_unique<tyndall::PictureOverlay>())
 {
   this->RayCaster->ShowBackgroundOff();
 }
@@ -174,6 +179,16 @@ vtkLitVolumeMapper::~vtkLitVolumeMapper() = default;
 vtkMediumRayCaster* vtkLitVolumeMapper::GetRayCaster()
 {
   return this->RayCaster;
+}
+
+vtkParticipatingMedium* vtkLitVolumeMapper::GetMedium()
+{
+  return this->OwnLight->GetMedium();
+}
+
+vtkLightPropagationMaps* vtkLitVolumeMapper::GetSolver()
+{
+  return this->OwnLight->GetSolver();
 }
 
 vtkMTimeType vtkLitVolumeMapper::GetMTime()
@@ -235,16 +250,46 @@ vtkImageData* vtkLitVolumeMapper::UpdateSurrounded()
   return image && this->UpdateInputs(surrounded->GetOutputPort()) ? image : nullptr;
 }
 
+/// Whether the input is to be shown by transfer functions (LightScalars).
+bool vtkLitVolumeMapper::HasScalarsToLight()
+{
+  vtkAlgorithmOutput* const input = this->GetInputConnection(0, 0);
+  if (!this->LightScalars || this->IsPiece() || !input)
+  {
+    return false;
+  }
+  input->GetProducer()->Update(input->GetIndex());
+  auto* const image = vtkImageData::SafeDownCast(this->GetDataObjectInput());
+  return image && image->GetNumberOfPoints() > 0 && !tyndall::ChosenArray(this->RayCaster, 0, image, "sigma_a") &&
+    !tyndall::ChosenArray(this->RayCaster, 1, image, "sigma_s");
+}
+
+/// Connection of the medium with its light: the input, or what is made of its scalars.
+vtkAlgorithmOutput* vtkLitVolumeMapper::LitConnection(vtkRenderer* renderer, vtkVolume* volume)
+{
+  this->Shown = this->GetInputConnection(0, 0);
+  if (this->HasScalarsToLight())
+  {
+    double centre[3];
+    vtkImageData::SafeDownCast(this->GetDataObjectInput())->GetCenter(centre);
+    this->Shown = this->OwnLight->Update(this->Shown, volume->GetProperty(),
+      tyndall::LightsOfRenderer(renderer, volume->GetMatrix(), centre), volume->GetAllocatedRenderTime() >= StillTime);
+    this->RayCaster->SetInputConnection(vtkMediumRayCaster::LIGHTS, this->OwnLight->GetLights());
+  }
+  return this->Shown;
+}
+
 double vtkLitVolumeMapper::EstimateExposure()
 {
-  if (this->GetNumberOfInputConnections(0) == 0 || !this->UpdateInputs(this->GetInputConnection(0, 0)))
+  vtkAlgorithmOutput* const shown = this->LightScalars && this->Shown ? this->Shown : this->GetInputConnection(0, 0);
+  if (this->GetNumberOfInputConnections(0) == 0 || !this->UpdateInputs(shown))
   {
     return 0.0;
   }
   std::vector<float> radiance, alpha;
   try
   {
-    auto* const image = vtkImageData::SafeDownCast(this->GetDataObjectInput());
+    auto* const image = vtkImageData::SafeDownCast(this->RayCaster->GetInputDataObject(vtkMediumRayCaster::MEDIUM, 0));
     const vtkSmartPointer<vtkImageData> aligned = image ? tyndall::Aligned(image) : nullptr;
     const tyndall::OwnAxes axes = tyndall::OwnAxesOf(aligned.GetPointer());
     const tyndall::Grid grid =
@@ -520,7 +565,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     this->Seconds = this->TimeToDraw = this->Spread->seconds + tyndall::ClockSeconds() - start;
     return;
   }
-  if (!this->UpdateInputs(this->GetInputConnection(0, 0)))
+  if (!this->UpdateInputs(this->LitConnection(renderer, volume)))
   {
     return;
   }
@@ -572,7 +617,7 @@ void vtkLitVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkLitVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(FrameTime, CommonExposure);
+  tyndallPrintMacro(LightScalars, FrameTime, CommonExposure);
   os << indent << "IsPiece: " << this->IsPiece() << "\n";
   tyndallPrintMacro(UsedExposure, CastSize, Seconds);
   os << indent << "RayCaster:\n";

@@ -13,13 +13,16 @@
 
 class vtkAlgorithmOutput;
 class vtkImageData;
+class vtkLightPropagationMaps;
 class vtkMediumRayCaster;
 class vtkMultiProcessController;
+class vtkParticipatingMedium;
 
 namespace tyndall
 {
 class Communicator;
 class PictureOverlay;
+class VolumeLight;
 struct AskedView;
 struct Picture;
 struct ToneMapping;
@@ -31,8 +34,12 @@ struct ToneMapping;
  *
  * Renders by vtkMediumRayCaster with the renderer's camera. Rays end at the opaque surfaces that the renderer has
  * already drawn, and the radiance of the rays is blended over these surfaces: the medium attenuates surfaces behind it,
- * but does not illuminate them. The volume may be rotated, translated and scaled uniformly; its property (transfer
- * functions) is not used.
+ * but does not illuminate them. The volume may be rotated, translated and scaled uniformly.
+ *
+ * An image without arrays `sigma_a` and `sigma_s` may be shown by the transfer functions of the volume's property
+ * (LightScalars): the mapper then makes a medium of them by vtkParticipatingMedium and solves its light by
+ * vtkLightPropagationMaps, with the lights of the renderer, whenever the view is still. Otherwise the property is not
+ * used.
  *
  * Input: vtkImageData with the arrays of vtkMediumRayCaster. The properties of RayCaster control rendering, and lights
  * and environment are inputs of RayCaster; ImageSize, camera and first input of RayCaster are not used. ShowBackground
@@ -55,6 +62,19 @@ public:
 
   /// Filter that casts the rays. Connect lights and environment to its inputs, and set properties of rendering on it.
   vtkMediumRayCaster* GetRayCaster();
+
+  ///@{
+  /// Whether images without `sigma_a` and `sigma_s` are shown by the transfer functions of the volume's property, in
+  /// the light of the renderer. Default off: such an image is an error.
+  tyndallFlagMacro(LightScalars);
+  ///@}
+
+  ///@{
+  /// The filters that make medium and light for LightScalars, to set the array, ColorMeans, MeanCosine, Tolerance and
+  /// so on. Inputs, VolumeProperty and UseTransferFunctions are set by the mapper.
+  vtkParticipatingMedium* GetMedium();
+  vtkLightPropagationMaps* GetSolver();
+  ///@}
 
   ///@{
   /// Target time for the rays of a frame while the camera moves, seconds. Default 0.025, valid [0.001, 10].
@@ -110,6 +130,8 @@ private:
   struct Pieces;
 
   bool UpdateInputs(vtkAlgorithmOutput* medium);
+  bool HasScalarsToLight();
+  vtkAlgorithmOutput* LitConnection(vtkRenderer* renderer, vtkVolume* volume);
   vtkImageData* UpdateSurrounded();
   bool IsPiece() const;
   double EstimateExposure();
@@ -128,6 +150,9 @@ private:
   bool DrawPiece(vtkRenderer* renderer, vtkVolume* volume);
 
   vtkNew<vtkMediumRayCaster> RayCaster;
+  bool LightScalars = false;
+  std::unique_ptr<tyndall::VolumeLight> OwnLight; ///< for LightScalars
+  vtkAlgorithmOutput* Shown = nullptr;            ///< connection of the medium of the last frame
   double FrameTime = 0.025;
   double CommonExposure = 0.0; ///< automatic exposure of all pieces (Exposure 0); 0: not chosen yet
   std::unique_ptr<Pieces> Spread;

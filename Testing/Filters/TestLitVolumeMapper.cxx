@@ -3,10 +3,12 @@
 #include "vtkActor.h"
 #include "vtkAutoInit.h"
 #include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkImageData.h"
 #include "vtkLitVolumeMapper.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkOutlineSource.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
@@ -15,6 +17,7 @@
 #include "vtkSphereSource.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -203,6 +206,36 @@ void RefusesAStretchedVolume(test::Claims& claims)
   scene.window->Render();
   claims.That(errors.WasOneWith("is not finite"), "and so is one that stands nowhere");
 }
+
+/// A ball of scalars is shown by transfer functions, and by the lights of the renderer, as they are edited.
+void LightsScalarsByTransferFunctions(test::Claims& claims)
+{
+  const vtkSmartPointer<vtkImageData> image = test::MakeImage({ { 12, 10, 8 } });
+  test::AddValues<vtkFloatArray>(image->GetPointData(), "s", image->GetNumberOfPoints(), 1, [&](vtkIdType point, int) {
+    const double* const at = image->GetPoint(point);
+    return 4.0 - std::hypot(at[0] - 6.0, std::hypot(at[1] - 5.0, at[2] - 4.0));
+  });
+  image->GetPointData()->SetActiveScalars("s");
+  Scene scene(image);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.0);
+  opacity->AddPoint(1.0, 0.9);
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 1.0, 0.2, 0.2);
+  vtkVolumeProperty* const property = scene.volume->GetProperty();
+  property->SetScalarOpacity(opacity);
+  property->SetColor(colors);
+  property->SetInterpolationTypeToLinear();
+  scene.mapper->LightScalarsOn();
+  const vtkIdType middle = PixelAt(Width / 2, Height / 2);
+  const vtkNew<vtkUnsignedCharArray> red = scene.Drawn();
+  claims.That(red->GetValue(middle) > red->GetValue(middle + 1) + 40, "the ball is red in the headlight");
+  claims.Near(red->GetValue(PixelAt(2, 2)), 0.0, 0.0, "beside the ball there is nothing");
+  colors->RemoveAllPoints();
+  colors->AddRGBPoint(0.0, 0.2, 1.0, 0.2);
+  const vtkNew<vtkUnsignedCharArray> green = scene.Drawn();
+  claims.That(green->GetValue(middle + 1) > green->GetValue(middle) + 40, "an edit makes it green");
+}
 }
 
 int TestLitVolumeMapper(int, char*[])
@@ -217,5 +250,6 @@ int TestLitVolumeMapper(int, char*[])
     EndsRaysAtOpaqueSurfaces(claims);
     CastsFewerRaysWhileTheCameraMoves(claims);
     RefusesAStretchedVolume(claims);
+    LightsScalarsByTransferFunctions(claims);
   });
 }
