@@ -8,6 +8,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
+#include "vtkSMArrayListDomain.h"
+#include "vtkSMProperty.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
 // This file calls only inline and virtual functions of vtkSMPVRepresentationProxy, so that the library RemotingViews,
@@ -16,6 +18,7 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionProxy.h"
 
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 #include <set>
@@ -155,6 +158,50 @@ void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
   }
 }
 
+/// Whether an output has neither a medium's arrays nor a solver's light, so that Lit Volume shows its scalars.
+bool HasScalarsAlone(const Shown& shown)
+{
+  vtkPVDataInformation* const data = shown.source ? shown.source->GetDataInformation(shown.port) : nullptr;
+  const char* const ofMedia[] = { "sigma_a", "sigma_s", "fluence" };
+  return data && std::none_of(std::begin(ofMedia), std::end(ofMedia), [&](const char* name) {
+    return data->GetArrayInformation(name, vtkDataObject::CELL) ||
+      data->GetArrayInformation(name, vtkDataObject::POINT);
+  });
+}
+
+/// Colours a representation that becomes Lit Volume and is not coloured yet by the first array of points, or else of
+/// cells, and rescales the transfer functions to it, as ParaView does for Volume.
+void ColorScalars(vtkSMPVRepresentationProxy* representation)
+{
+  vtkSMProperty* const chosen = representation->GetProperty("ColorArrayName");
+  auto* const arrays = chosen ? chosen->FindDomain<vtkSMArrayListDomain>() : nullptr;
+  if (!arrays || arrays->GetNumberOfStrings() == 0 || representation->GetUsingScalarColoring() ||
+    !HasScalarsAlone(ShownBy(representation)))
+  {
+    return;
+  }
+  unsigned int first = 0;
+  while (first < arrays->GetNumberOfStrings() && arrays->GetFieldAssociation(first) != vtkDataObject::POINT)
+  {
+    ++first;
+  }
+  first = first < arrays->GetNumberOfStrings() ? first : 0;
+  if (representation->SetScalarColoring(arrays->GetString(first), arrays->GetFieldAssociation(first)))
+  {
+    representation->RescaleTransferFunctionToDataRange(true);
+  }
+}
+
+void ColorScalarsAtChange(vtkObject* caller, unsigned long, void*, void* property)
+{
+  auto* const representation = vtkSMPVRepresentationProxy::SafeDownCast(caller);
+  if (IsChangeOf(property, "Representation") &&
+    IsLitVolume(vtkSMPropertyHelper(representation, "Representation").GetAsString()))
+  {
+    ColorScalars(representation);
+  }
+}
+
 /// Makes the given axes logarithmic in line charts that are still empty: the new representation will be shown in one of
 /// these charts.
 void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::vector<const char*>& axes)
@@ -255,6 +302,11 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   else if (vtkPVArrayInformation* const array = colored ? HintedArray(shown, colored) : nullptr)
   {
     ColorBy(representation, array);
+  }
+  if (hasColors && vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  {
+    static vtkCallbackCommand* const color = CommandOf(ColorScalarsAtChange);
+    Observe(representation, vtkCommand::PropertyModifiedEvent, color);
   }
   FollowVolumeColors(representation); // called last, because the colours of this hint override those of other hints
   const bool isLineChart = representation->GetProperty("UseIndexForXAxis") && representation->GetProperty("XArrayName");

@@ -47,6 +47,19 @@ constexpr int ExposedSize[2] = { 64, 48 };
 /// Viewing directions for the automatic exposure: the corners of a tetrahedron.
 constexpr double ExposedFrom[4][3] = { { 1, 1, 1 }, { -1, -1, 1 }, { -1, 1, -1 }, { 1, -1, -1 } };
 
+/// Lets a filter read the scalars that a mapper is to show. If the mapper names none, the filter's choice stays.
+void ChooseScalars(vtkAlgorithm* filter, vtkAbstractVolumeMapper* mapper)
+{
+  const int mode = mapper->GetScalarMode();
+  const bool areOfCells = mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA;
+  if ((areOfCells || mode == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA) && mapper->GetArrayName())
+  {
+    filter->SetInputArrayToProcess(0, 0, 0,
+      areOfCells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
+      mapper->GetArrayName());
+  }
+}
+
 /// Pixels to blend over the scene, red, green, blue, alpha: tone-mapped radiance and the medium's alpha.
 /// @param ends  distances at which surfaces end the rays (RenderedCamera::EndsOf); empty: no ray ends
 /// @param background  whether the background is visible: pixels whose rays meet no surface are then opaque
@@ -264,17 +277,34 @@ bool vtkLitVolumeMapper::HasScalarsToLight()
     !tyndall::ChosenArray(this->RayCaster, 1, image, "sigma_s");
 }
 
+/// Lights scalars by the lights and the environment of the ray caster. If it has no lights, those of the renderer are
+/// used, and the ray caster has them as well.
+void vtkLitVolumeMapper::ConnectLights()
+{
+  using Port = vtkMediumRayCaster::InputPorts;
+  vtkLightPropagationMaps* const solver = this->GetSolver();
+  if (!this->RayCaster->GetInputConnection(Port::LIGHTS, 0))
+  {
+    this->RayCaster->SetInputConnection(Port::LIGHTS, this->OwnLight->GetLights());
+  }
+  solver->SetLightsConnection(this->RayCaster->GetInputConnection(Port::LIGHTS, 0));
+  solver->SetEnvironmentConnection(this->RayCaster->GetInputConnection(Port::ENVIRONMENT, 0));
+  solver->SetEnvironmentUp(this->RayCaster->GetEnvironmentUp());
+  solver->SetEnvironmentAzimuth(this->RayCaster->GetEnvironmentAzimuth());
+}
+
 /// Connection of the medium with its light: the input, or what is made of its scalars.
 vtkAlgorithmOutput* vtkLitVolumeMapper::LitConnection(vtkRenderer* renderer, vtkVolume* volume)
 {
   this->Shown = this->GetInputConnection(0, 0);
   if (this->HasScalarsToLight())
   {
+    ChooseScalars(this->GetMedium(), this);
+    this->ConnectLights();
     double centre[3];
     vtkImageData::SafeDownCast(this->GetDataObjectInput())->GetCenter(centre);
     this->Shown = this->OwnLight->Update(this->Shown, volume->GetProperty(),
       tyndall::LightsOfRenderer(renderer, volume->GetMatrix(), centre), volume->GetAllocatedRenderTime() >= StillTime);
-    this->RayCaster->SetInputConnection(vtkMediumRayCaster::LIGHTS, this->OwnLight->GetLights());
   }
   return this->Shown;
 }

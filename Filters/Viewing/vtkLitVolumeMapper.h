@@ -38,8 +38,9 @@ struct ToneMapping;
  *
  * An image without arrays `sigma_a` and `sigma_s` may be shown by the transfer functions of the volume's property
  * (LightScalars): the mapper then makes a medium of them by vtkParticipatingMedium and solves its light by
- * vtkLightPropagationMaps, with the lights of the renderer, whenever the view is still. Otherwise the property is not
- * used.
+ * vtkLightPropagationMaps, with the lights and the environment of RayCaster, or without such lights with those of the
+ * renderer, whenever the view is still. The scalars are those of SelectScalarArray and SetScalarMode, or else those
+ * that GetMedium() reads. Otherwise the property is not used.
  *
  * Input: vtkImageData with the arrays of vtkMediumRayCaster. The properties of RayCaster control rendering, and lights
  * and environment are inputs of RayCaster; ImageSize, camera and first input of RayCaster are not used. ShowBackground
@@ -70,7 +71,7 @@ public:
   ///@}
 
   ///@{
-  /// The filters that make medium and light for LightScalars, to set the array, ColorMeans, MeanCosine, Tolerance and
+  /// The filters that make medium and light for LightScalars, to set ColorMeans, MeanCosine, Tolerance and
   /// so on. Inputs, VolumeProperty and UseTransferFunctions are set by the mapper.
   vtkParticipatingMedium* GetMedium();
   vtkLightPropagationMaps* GetSolver();
@@ -131,6 +132,7 @@ private:
 
   bool UpdateInputs(vtkAlgorithmOutput* medium);
   bool HasScalarsToLight();
+  void ConnectLights();
   vtkAlgorithmOutput* LitConnection(vtkRenderer* renderer, vtkVolume* volume);
   vtkImageData* UpdateSurrounded();
   bool IsPiece() const;

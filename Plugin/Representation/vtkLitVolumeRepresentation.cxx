@@ -2,6 +2,7 @@
 
 #include "vtkLitVolumeMapper.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkParticipatingMedium.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -46,6 +47,11 @@ vtkLitVolumeRepresentation::~vtkLitVolumeRepresentation() = default;
 vtkMediumRayCaster* vtkLitVolumeRepresentation::RayCaster()
 {
   return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetRayCaster();
+}
+
+vtkParticipatingMedium* vtkLitVolumeRepresentation::Medium()
+{
+  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetMedium();
 }
 
 int vtkLitVolumeRepresentation::FillInputPortInformation(int port, vtkInformation* information)
@@ -130,19 +136,29 @@ bool vtkLitVolumeRepresentation::RemoveFromView(vtkView* view)
   return this->Superclass::RemoveFromView(view);
 }
 
-/// Passes only mapper and visibility to the actor: the mapper uses neither an active array nor transfer functions.
+/// Lets the mapper light the array that the image is coloured by, as the superclass lets its mapper show it. A medium
+/// with its light is visible even if no array is chosen.
 void vtkLitVolumeRepresentation::UpdateMapperParameters()
 {
+  vtkInformation* const array = this->GetInputArrayInformation(0);
+  const char* const name = array ? array->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const bool isColored = name && name[0] != '\0';
+  if (isColored)
+  {
+    this->Superclass::UpdateMapperParameters();
+  }
+  vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SetLightScalars(isColored);
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->GetVisibility());
 }
 
-// Setters that pass a property to the ray caster.
-#define FORWARD(Name, Type)                              \
+// Setters that pass a property to the ray caster, or to the filter that makes a medium of scalars.
+#define FORWARD_TO(Filter, Name, Type)                   \
   void vtkLitVolumeRepresentation::Set##Name(Type value) \
   {                                                      \
-    this->RayCaster()->Set##Name(value);                 \
+    this->Filter()->Set##Name(value);                    \
   }
+#define FORWARD(Name, Type) FORWARD_TO(RayCaster, Name, Type)
 #define FORWARD_TRIPLE(Name)                                                        \
   void vtkLitVolumeRepresentation::Set##Name(double red, double green, double blue) \
   {                                                                                 \
@@ -167,7 +183,11 @@ FORWARD(Device, const char*)
 FORWARD_TRIPLE(TableColor)
 FORWARD_TRIPLE(BackgroundColor)
 FORWARD_TRIPLE(BackgroundRadiance)
+FORWARD_TO(Medium, ColorMeans, int)
+FORWARD_TO(Medium, MeanCosine, double)
+FORWARD_TO(Medium, ExtinctionScale, double)
 #undef FORWARD
+#undef FORWARD_TO
 #undef FORWARD_TRIPLE
 
 double vtkLitVolumeRepresentation::GetUsedExposure()

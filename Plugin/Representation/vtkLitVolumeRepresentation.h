@@ -5,6 +5,7 @@
 #include "vtkTyndallRepresentationModule.h" // for export macro
 
 class vtkMediumRayCaster;
+class vtkParticipatingMedium;
 
 /**
  * @class vtkLitVolumeRepresentation
@@ -17,7 +18,8 @@ class vtkMediumRayCaster;
  * Several ranks show the same picture as a single rank (vtkLitVolumeMapper::SetPiece): before each frame the ranks
  * exchange the pixels of their pieces. With Exposure 0 the ranks choose a common exposure when their data change.
  *
- * The superclass's transfer functions and other properties for colouring a volume are not used.
+ * An image without `sigma_a` and `sigma_s` is shown by the superclass's array, transfer functions and unit distance, in
+ * the light of the view (vtkLitVolumeMapper::SetLightScalars). Other images do not use these properties.
  */
 class TYNDALLREPRESENTATION_EXPORT vtkLitVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -49,6 +51,13 @@ public:
   void SetDevice(const char* name);
   ///@}
 
+  ///@{
+  /// Properties of vtkParticipatingMedium for images without `sigma_a` and `sigma_s`; see there.
+  void SetColorMeans(int meaning);
+  void SetMeanCosine(double g);
+  void SetExtinctionScale(double factor);
+  ///@}
+
   /// Exposure of the last frame: factor by which radiance was multiplied; 0 before the first frame.
   double GetUsedExposure();
 
@@ -78,6 +87,7 @@ private:
   void operator=(const vtkLitVolumeRepresentation&) = delete;
 
   vtkMediumRayCaster* RayCaster();
+  vtkParticipatingMedium* Medium();
   void SharePieces(vtkDataObject* surrounded);
   void BeforeFrame(vtkObject* renderer, unsigned long event, void* data);
 
