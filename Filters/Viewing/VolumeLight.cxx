@@ -86,13 +86,11 @@ std::vector<double> NumbersOf(const std::vector<Light>& lights)
   }
   return numbers;
 }
-}
 
-std::vector<Light> LightsOfRenderer(vtkRenderer* renderer, vtkMatrix4x4* place, const double centre[3])
+/// The lights of a renderer that shine.
+std::vector<vtkLight*> ShiningLights(vtkRenderer* renderer)
 {
-  vtkNew<vtkMatrix4x4> toVolume;
-  vtkMatrix4x4::Invert(place, toVolume);
-  std::vector<Light> lights;
+  std::vector<vtkLight*> shining;
   vtkCollectionSimpleIterator at;
   vtkLightCollection* const all = renderer->GetLights();
   all->InitTraversal(at);
@@ -100,10 +98,30 @@ std::vector<Light> LightsOfRenderer(vtkRenderer* renderer, vtkMatrix4x4* place, 
   {
     if (light->GetSwitch() && light->GetIntensity() > 0.0)
     {
-      lights.push_back(LightOf(light, toVolume, centre));
+      shining.push_back(light);
     }
   }
-  return lights;
+  return shining;
+}
+
+/// What a moving camera does not change: the properties of lights, and the place of the volume.
+std::vector<double> SettingsOf(const RendererLights& lights)
+{
+  std::vector<double> settings(lights.place->GetData(), lights.place->GetData() + 16);
+  for (vtkLight* const light : ShiningLights(lights.renderer))
+  {
+    settings.insert(settings.end(),
+      { 1.0 * light->GetLightType(), 1.0 * light->GetPositional(), light->GetIntensity(), light->GetConeAngle() });
+    settings.insert(settings.end(), light->GetDiffuseColor(), light->GetDiffuseColor() + 3);
+    settings.insert(settings.end(), light->GetAttenuationValues(), light->GetAttenuationValues() + 3);
+    if (!light->LightTypeIsHeadlight()) // which the renderer moves with its camera
+    {
+      settings.insert(settings.end(), light->GetPosition(), light->GetPosition() + 3);
+      settings.insert(settings.end(), light->GetFocalPoint(), light->GetFocalPoint() + 3);
+    }
+  }
+  return settings;
+}
 }
 
 VolumeLight::VolumeLight()
@@ -120,8 +138,33 @@ vtkAlgorithmOutput* VolumeLight::GetLights()
   return this->Lights->GetOutputPort();
 }
 
+void VolumeLight::PlaceLights(const RendererLights& lights)
+{
+  std::vector<double> settings = SettingsOf(lights);
+  if (!lights.followCamera && settings == this->LightSettings)
+  {
+    return;
+  }
+  this->LightSettings = std::move(settings);
+  vtkNew<vtkMatrix4x4> toVolume;
+  vtkMatrix4x4::Invert(lights.place, toVolume);
+  std::vector<Light> placed;
+  for (vtkLight* const light : ShiningLights(lights.renderer))
+  {
+    placed.push_back(LightOf(light, toVolume, lights.centre));
+  }
+  std::vector<double> numbers = NumbersOf(placed);
+  if (!this->Lights->GetOutputDataObject(0) || numbers != this->LightsInNumbers)
+  {
+    vtkNew<vtkPolyData> written;
+    WriteLights(placed, written);
+    this->Lights->SetOutput(written);
+    this->LightsInNumbers = std::move(numbers);
+  }
+}
+
 vtkAlgorithmOutput* VolumeLight::Update(
-  vtkAlgorithmOutput* scalars, vtkVolumeProperty* property, const std::vector<Light>& lights, bool isStill)
+  vtkAlgorithmOutput* scalars, vtkVolumeProperty* property, const RendererLights& lights, bool isStill)
 {
   if (this->Solved->GetOutputDataObject(0) && !isStill)
   {
@@ -129,14 +172,7 @@ vtkAlgorithmOutput* VolumeLight::Update(
   }
   this->Medium->SetInputConnection(scalars);
   this->Medium->SetVolumeProperty(property);
-  std::vector<double> numbers = NumbersOf(lights);
-  if (!this->Lights->GetOutputDataObject(0) || numbers != this->LightsInNumbers)
-  {
-    vtkNew<vtkPolyData> written;
-    WriteLights(lights, written);
-    this->Lights->SetOutput(written);
-    this->LightsInNumbers = std::move(numbers);
-  }
+  this->PlaceLights(lights);
   this->Solver->Update();
   vtkImageData* const solved = this->Solver->GetOutput();
   if (!this->Solved->GetOutputDataObject(0) || solved->GetMTime() > this->SolvedTime)

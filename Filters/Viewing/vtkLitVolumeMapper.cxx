@@ -301,10 +301,10 @@ vtkAlgorithmOutput* vtkLitVolumeMapper::LitConnection(vtkRenderer* renderer, vtk
   {
     ChooseScalars(this->GetMedium(), this);
     this->ConnectLights();
-    double centre[3];
-    vtkImageData::SafeDownCast(this->GetDataObjectInput())->GetCenter(centre);
-    this->Shown = this->OwnLight->Update(this->Shown, volume->GetProperty(),
-      tyndall::LightsOfRenderer(renderer, volume->GetMatrix(), centre), volume->GetAllocatedRenderTime() >= StillTime);
+    tyndall::RendererLights lights = { renderer, volume->GetMatrix(), {}, this->LightsFollowCamera };
+    vtkImageData::SafeDownCast(this->GetDataObjectInput())->GetCenter(lights.centre);
+    this->Shown =
+      this->OwnLight->Update(this->Shown, volume->GetProperty(), lights, volume->GetAllocatedRenderTime() >= StillTime);
   }
   return this->Shown;
 }
@@ -647,7 +647,7 @@ void vtkLitVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkLitVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(LightScalars, FrameTime, CommonExposure);
+  tyndallPrintMacro(LightScalars, LightsFollowCamera, FrameTime, CommonExposure);
   os << indent << "IsPiece: " << this->IsPiece() << "\n";
   tyndallPrintMacro(UsedExposure, CastSize, Seconds);
   os << indent << "RayCaster:\n";

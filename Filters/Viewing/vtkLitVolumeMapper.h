@@ -71,6 +71,13 @@ public:
   ///@}
 
   ///@{
+  /// Whether headlight and camera lights of the renderer illuminate LightScalars from where they are in each still
+  /// frame. Default on. Off: from where they were when a property of the lights, or the place of the volume, last
+  /// changed, so that a moved camera needs no solve.
+  tyndallFlagMacro(LightsFollowCamera);
+  ///@}
+
+  ///@{
   /// The filters that make medium and light for LightScalars, to set ColorMeans, MeanCosine, Tolerance and
   /// so on. Inputs, VolumeProperty and UseTransferFunctions are set by the mapper.
   vtkParticipatingMedium* GetMedium();
@@ -153,6 +160,7 @@ private:
 
   vtkNew<vtkMediumRayCaster> RayCaster;
   bool LightScalars = false;
+  bool LightsFollowCamera = true;
   std::unique_ptr<tyndall::VolumeLight> OwnLight; ///< for LightScalars
   vtkAlgorithmOutput* Shown = nullptr;            ///< connection of the medium of the last frame
   double FrameTime = 0.025;

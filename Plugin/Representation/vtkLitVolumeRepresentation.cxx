@@ -44,14 +44,19 @@ vtkLitVolumeRepresentation::vtkLitVolumeRepresentation()
 
 vtkLitVolumeRepresentation::~vtkLitVolumeRepresentation() = default;
 
+vtkLitVolumeMapper* vtkLitVolumeRepresentation::LitMapper()
+{
+  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper);
+}
+
 vtkMediumRayCaster* vtkLitVolumeRepresentation::RayCaster()
 {
-  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetRayCaster();
+  return this->LitMapper()->GetRayCaster();
 }
 
 vtkParticipatingMedium* vtkLitVolumeRepresentation::Medium()
 {
-  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetMedium();
+  return this->LitMapper()->GetMedium();
 }
 
 int vtkLitVolumeRepresentation::FillInputPortInformation(int port, vtkInformation* information)
@@ -80,7 +85,7 @@ void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
   if (ranks && ranks->GetNumberOfProcesses() > 1)
   {
-    auto* const mapper = vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper);
+    vtkLitVolumeMapper* const mapper = this->LitMapper();
     mapper->SetPiece(ranks, vtkImageData::SafeDownCast(surrounded));
     mapper->AgreeOnExposure();
   }
@@ -110,7 +115,7 @@ void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long,
   if (this->GetVisibility())
   {
     this->Actor->ComputeMatrix();
-    vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SeePieces(vtkRenderer::SafeDownCast(renderer), this->Actor);
+    this->LitMapper()->SeePieces(vtkRenderer::SafeDownCast(renderer), this->Actor);
   }
 }
 
@@ -147,12 +152,12 @@ void vtkLitVolumeRepresentation::UpdateMapperParameters()
   {
     this->Superclass::UpdateMapperParameters();
   }
-  vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SetLightScalars(isColored);
+  this->LitMapper()->SetLightScalars(isColored);
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->GetVisibility());
 }
 
-// Setters that pass a property to the ray caster, or to the filter that makes a medium of scalars.
+// Setters that pass a property to the ray caster, to the mapper, or to the filter that makes a medium of scalars.
 #define FORWARD_TO(Filter, Name, Type)                   \
   void vtkLitVolumeRepresentation::Set##Name(Type value) \
   {                                                      \
@@ -183,6 +188,8 @@ FORWARD(Device, const char*)
 FORWARD_TRIPLE(TableColor)
 FORWARD_TRIPLE(BackgroundColor)
 FORWARD_TRIPLE(BackgroundRadiance)
+FORWARD_TO(LitMapper, LightsFollowCamera, bool)
+FORWARD_TO(LitMapper, FrameTime, double)
 FORWARD_TO(Medium, ColorMeans, int)
 FORWARD_TO(Medium, MeanCosine, double)
 FORWARD_TO(Medium, ExtinctionScale, double)
@@ -192,7 +199,7 @@ FORWARD_TO(Medium, ExtinctionScale, double)
 
 double vtkLitVolumeRepresentation::GetUsedExposure()
 {
-  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetUsedExposure();
+  return this->LitMapper()->GetUsedExposure();
 }
 
 void vtkLitVolumeRepresentation::RemoveLights()
@@ -203,11 +210,6 @@ void vtkLitVolumeRepresentation::RemoveLights()
 void vtkLitVolumeRepresentation::RemoveEnvironment()
 {
   this->SetInputConnection(vtkMediumRayCaster::ENVIRONMENT, nullptr);
-}
-
-void vtkLitVolumeRepresentation::SetFrameTime(double seconds)
-{
-  vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SetFrameTime(seconds);
 }
 
 void vtkLitVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)

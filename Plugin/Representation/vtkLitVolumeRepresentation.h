@@ -4,6 +4,7 @@
 #include "vtkImageVolumeRepresentation.h"
 #include "vtkTyndallRepresentationModule.h" // for export macro
 
+class vtkLitVolumeMapper;
 class vtkMediumRayCaster;
 class vtkParticipatingMedium;
 
@@ -67,8 +68,11 @@ public:
   void RemoveEnvironment();
   ///@}
 
+  ///@{
   /// Properties of vtkLitVolumeMapper; see there.
   void SetFrameTime(double seconds);
+  void SetLightsFollowCamera(bool follow);
+  ///@}
 
 protected:
   vtkLitVolumeRepresentation();
@@ -86,6 +90,7 @@ private:
   vtkLitVolumeRepresentation(const vtkLitVolumeRepresentation&) = delete;
   void operator=(const vtkLitVolumeRepresentation&) = delete;
 
+  vtkLitVolumeMapper* LitMapper();
   vtkMediumRayCaster* RayCaster();
   vtkParticipatingMedium* Medium();
   void SharePieces(vtkDataObject* surrounded);

@@ -38,6 +38,15 @@ assert before.max() > 100 and before.std() > 10, (before.max(), before.std())
 colors.RGBPoints = [low, 0.9, 0.2, 0.1, high, 0.9, 0.2, 0.1]
 red = lit_view.drawn(view)
 assert red[75, 100, 0] > 2 * red[75, 100, 2], red[75, 100]
+
+# The light kit stands still where it is told to.
+shown.LightsFollowCamera = "Never"
+assert difference(lit_view.drawn(view), red) <= 1
+view.CameraPosition = [-30, 30, -21]
+standing = lit_view.drawn(view)
+shown.LightsFollowCamera = "At Rest"
+assert difference(lit_view.drawn(view), standing) > 20
+lit_view.place_camera(view)
 colors.RGBPoints = [low, 0.2, 0.3, 0.9, high, 0.9, 0.8, 0.5]
 
 # In a light of the scene it is what the filters make of it.
@@ -51,6 +60,9 @@ solved = LightPropagationMaps(Input=medium, Lights=rig)
 expected = lit_view.cast(solved, view)
 pictures.write(output + "ByFilters.png", numpy.concatenate([lit, expected], axis=1))
 lit_view.check_same(lit, expected)
+shown.OpacityArrayName, shown.UseSeparateOpacityArray = ["POINTS", "RTData"], 1
+assert difference(lit_view.drawn(view), lit) <= 1, "the same opacity by another array"
+shown.UseSeparateOpacityArray = 0
 
 # Connected lights are used instead of the view's; other properties of the medium.
 sun.Intensity = 0.1
