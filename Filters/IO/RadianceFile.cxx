@@ -377,7 +377,7 @@ struct ExrChannels
 ExrChannels FindChannels(const std::string& path, const Imf::ChannelList& list)
 {
   const auto usable = [&](const std::string& name) {
-    const Imf::Channel* channel = list.findChannel(name);
+    const Imf::Channel* channel = list.findChannel(name.c_str());
     return channel && channel->xSampling == 1 && channel->ySampling == 1;
   };
   std::string all;
@@ -456,7 +456,7 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
   {
     char* base = reinterpret_cast<char*>(pixels.data() + channel) - left * static_cast<std::int64_t>(pixel) -
       top * static_cast<std::int64_t>(row);
-    buffer.insert(channels.Names[channel], Imf::Slice(Imf::FLOAT, base, pixel, row));
+    buffer.insert(channels.Names[channel].c_str(), Imf::Slice(Imf::FLOAT, base, pixel, row));
   }
   file.setFrameBuffer(buffer);
   file.readPixels(windows.Data.min.y, windows.Data.max.y);
