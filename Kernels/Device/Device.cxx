@@ -116,7 +116,7 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
     // The OpenCL loader also reports that there is no driver if memory is short.
     troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
                                                    : std::string(" Install one:");
-    troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
+    troubles += " Debian's package pocl-opencl-icd, or tyndall[cpu] of pip, runs OpenCL on the CPU.";
   }
   std::vector<Candidate> found;
   for (const cl::Platform& platform : platforms)
