@@ -91,6 +91,12 @@ if (TYNDALL_WITH_PARAVIEW)
 endif ()
 set(wrapping OFF)
 set(library_destination "${CMAKE_INSTALL_LIBDIR}")
+set(library_version VERSION "${PROJECT_VERSION}" SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+if (SKBUILD) # a wheel: holds no symbolic links, and lies beside VTK's libraries
+  set(library_destination "tyndall")
+  set(library_version)
+  list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN/../vtkmodules")
+endif ()
 if (ParaView_FOUND)
   set(TYNDALL_HOST "ParaView ${ParaView_VERSION}")
   set(wrapping ON) # for the client-server streams of the plugin
@@ -147,8 +153,7 @@ vtk_module_build(
   INSTALL_EXPORT Tyndall
   INSTALL_HEADERS ON
   ENABLE_WRAPPING ${wrapping}
-  VERSION "${PROJECT_VERSION}"
-  SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+  ${library_version}
   HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/Tyndall"
   LIBRARY_DESTINATION "${library_destination}"
   HIERARCHY_DESTINATION "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/Tyndall"
@@ -159,7 +164,11 @@ if (wrapping)
   # The classes for Python, and the package around them (Filters/Python/tyndall): for the host's VTK, beside whose Python
   # modules (vtkmodules) it is imported.
   find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
-  if (CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(TYNDALL_VTK_ADVICE "Take that folder from PYTHONPATH, or pip's vtk out of the environment, so that Debian's are found.")
+  if (SKBUILD) # a wheel, whose root is the prefix
+    set(python_destination ".")
+    set(TYNDALL_VTK_ADVICE "Install that VTK: python -m pip install vtk==${VTK_VERSION}")
+  elseif (CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     set(python_destination "lib/python3/dist-packages") # where Debian's Python looks
   else ()
     set(python_destination "${CMAKE_INSTALL_LIBDIR}/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/site-packages")
@@ -176,14 +185,20 @@ if (wrapping)
     INSTALL_HEADERS OFF
     COMPONENT "python")
 
-  foreach (file IN ITEMS __init__.py solving.py)
+  foreach (file IN ITEMS __init__.py demo.py solving.py)
     configure_file("${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/${file}" "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}" COPYONLY)
   endforeach ()
   configure_file("${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/host.py.in" "${TYNDALL_PYTHON_PACKAGES}/tyndall/host.py" @ONLY)
-  foreach (file IN ITEMS __init__.py host.py solving.py)
+  foreach (file IN ITEMS __init__.py demo.py host.py solving.py)
     install(FILES "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}"
       DESTINATION "${python_destination}/tyndall" COMPONENT "python")
   endforeach ()
+  if (SKBUILD) # what is in the wheel, or compiled into it
+    foreach (package IN ITEMS libeigen3-dev libglm-dev libopenexr-dev libimath-dev ocl-icd-opencl-dev)
+      install(FILES "/usr/share/doc/${package}/copyright"
+        DESTINATION "tyndall/licenses" RENAME "${package}.txt" COMPONENT "python")
+    endforeach ()
+  endif ()
 endif ()
 
 if (ParaView_FOUND)
