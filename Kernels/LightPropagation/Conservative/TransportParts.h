@@ -121,7 +121,7 @@ public:
   /// Values of the angular functions along the directions of the sweeps, for SweepRequest::angular; null: scattering is
   /// isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
-  void DarkenBeams(); ///< sets the first-collision sources of beams (SweptMoments.h) in Source to 0
+  void DarkenBeams(); ///< sets the first-collision sources of beams (SweptMoments) in Source to 0
   /// Object that moves the beams' first-collision sources out of Source for the sweep in which beams are traced, and
   /// back for the next one (BeamScattering.h).
   BeamsInSource BeamsOfSource();
