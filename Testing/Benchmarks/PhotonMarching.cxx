@@ -98,7 +98,7 @@ void TimeWays(const PhotonBench& bench)
   conservative("conservative, shared sums (atomics)", settings, true);
   way("as published", [&] {
     return MarchPublished(device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(),
-      scene.octree.levels.data(), scene.photons, { 10, false });
+      scene.octree.levels.data(), scene.photons, { false });
   });
   PaperScene straight = scene;
   std::fill(straight.voxels.ior.begin(), straight.voxels.ior.end(), 1.0f);
@@ -154,7 +154,7 @@ void AddLoss(Table& table, const char* where, PhotonScene& scene, Device& device
   PackingLoss loss;
   const std::uint8_t* levels = scene.levels.empty() ? nullptr : scene.levels.data();
   const PhotonLight published = MarchPublished(
-    device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(), levels, photons, { 10, false }, &loss);
+    device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(), levels, photons, { false }, &loss);
   const PhotonLight conservative = scene.March(device, photons);
   const double count = static_cast<double>(photons.size());
   const double givenUp = static_cast<double>(loss.givenUp) / static_cast<double>(loss.deposits);

@@ -228,8 +228,8 @@ TEST_F(PhotonMarcherTest, AllPhotonsThroughOneVoxelLoseNothingAndThePublishedPac
     EXPECT_NEAR(light.light.balance.absorbed[0], -std::expm1(-0.6), 1e-5);
   }
   PackingLoss loss;
-  const PhotonLight published = MarchPublished(this->GetDevice(), Domain(scene.medium.grid), scene.Medium(),
-    scene.Index(), nullptr, photons, { 10, false }, &loss);
+  const PhotonLight published = MarchPublished(
+    this->GetDevice(), Domain(scene.medium.grid), scene.Medium(), scene.Index(), nullptr, photons, { false }, &loss);
   EXPECT_GT(loss.Relative(), 0.5);
   EXPECT_GT(BalanceError(published), 0.1);
   std::printf(
@@ -512,7 +512,7 @@ TEST_F(PhotonMarcherTest, ThePublishedSchemeGivesTheSameLightAlongAnAxis)
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 0.0, 0.0, 1.0 }, 256 * 4, Sampler::Grid);
   const PhotonLight conservative = scene.March(this->GetDevice(), photons);
   const PhotonLight published = MarchPublished(
-    this->GetDevice(), Domain(scene.medium.grid), scene.Medium(), scene.Index(), nullptr, photons, { 10, false });
+    this->GetDevice(), Domain(scene.medium.grid), scene.Medium(), scene.Index(), nullptr, photons, { false });
   for (std::size_t i : { 100u, 1000u, 3000u })
   {
     EXPECT_NEAR(published.light.fluence[3 * i] / conservative.light.fluence[i], 1.0, 0.05);

@@ -402,8 +402,8 @@ void PhotonsOnRanks::ExpectErrors(const std::string& words, const std::function<
     const Domain domain(communicator, given);
     if (published)
     {
-      MarchPublished(this->GetDevice(), domain, part.medium, part.Index(), part.Levels(), photons,
-        { 10, settings.counts }, nullptr, monitor);
+      MarchPublished(this->GetDevice(), domain, part.medium, part.Index(), part.Levels(), photons, { settings.counts },
+        nullptr, monitor);
       return;
     }
     PhotonMarcher(this->GetDevice(), domain, part.medium, part.Index(), settings, part.Levels())

@@ -27,6 +27,8 @@ inline const int* WhereIs(const PublishedPhoton& photon)
 
 namespace
 {
+constexpr int Tries = 10; ///< maximum number of compare-and-swap attempts for a deposit, which is lost if all fail
+
 /// Maximum distance in voxels between successive deposits of a step. The next voxel is usually a neighbour. Where the
 /// line runs along an edge of voxels, rounding may select the voxel behind this neighbour.
 constexpr int VoxelsPassed = 2;
@@ -118,13 +120,12 @@ public:
   /// @param ior     refractive index in `part.known`, the block and a halo of Reach voxels; null: rays are straight
   /// @param levels  octree levels of the block's voxels, of the domain's octree; null: no octree
   /// @param stepLimit  maximum number of steps of a photon
-  /// @param tries   maximum number of compare-and-swap attempts for a deposit
   PublishedMarch(Device& device, const Medium& medium, const float* ior, const std::uint8_t* levels,
-    const MarchedPart& part, int stepLimit, int tries)
+    const MarchedPart& part, int stepLimit)
     : TheDevice(device)
     , TheMedium(medium)
     , Voxels(medium.grid.VoxelCount())
-    , Options(Define("BENDS", ior != nullptr) + Define("LEVELS", levels != nullptr) + Define("TRIES", tries) +
+    , Options(Define("BENDS", ior != nullptr) + Define("LEVELS", levels != nullptr) + Define("TRIES", Tries) +
         Define("A_CHANNELS", Components(medium.sigma_a)) + Define("S_CHANNELS", Components(medium.sigma_s)))
     , Info(Describe(part, stepLimit))
     , Index(this->FindIndex(ior, part))
@@ -303,8 +304,7 @@ private:
       }
     });
     RequireSameMedium(this->TheDomain, this->TheMedium, ior);
-    RequireSame(
-      this->TheDomain.Comm(), "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
+    RequireSame(this->TheDomain.Comm(), "settings", true, { this->Settings.smooth ? 1.0 : 0.0 });
   }
 
   void Prepare(const Field& ior, const std::uint8_t* levels)
@@ -327,7 +327,7 @@ private:
         this->Through =
           std::make_unique<PublishedMarch>(this->TheDevice, this->TheMedium, bends ? index.data() : nullptr, levels,
             MarchedPart{ this->TheDomain.Whole(), this->TheDomain.Own(), around.Known() },
-            MarchEventLimit(this->TheDomain.Whole(), PackingSettings()), this->Settings.tries);
+            MarchEventLimit(this->TheDomain.Whole(), PackingSettings()));
       }
     });
   }

@@ -14,7 +14,6 @@ namespace tyndall
 {
 struct PublishedSettings
 {
-  int tries = 10;     ///< maximum number of compare-and-swap attempts for a deposit, which is lost if all fail
   bool smooth = true; ///< whether the 3x3x3 Gaussian filter is applied to the light
 };
 
