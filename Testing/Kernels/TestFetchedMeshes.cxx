@@ -50,19 +50,10 @@ TEST_P(FetchedMesh, IsTheSameFromAllSidesAndHasItsVolume)
   std::vector<cl_ushort> first;
   for (settings.columnAxis = 0; settings.columnAxis < 3; ++settings.columnAxis)
   {
-    for (bool above : { false, true })
-    {
-      settings.fromAbove = above;
-      WholeCounts whole = CountWhole(this->GetDevice(), grid, { { &solid.mesh } }, settings);
-      EXPECT_EQ(whole.windings[0].oddSamples, 0u);
-      std::vector<cl_ushort> counts = std::move(whole.counts[0]);
-      if (first.empty())
-      {
-        first = std::move(counts);
-        continue;
-      }
-      EXPECT_TRUE(counts == first) << "axis " << settings.columnAxis << (above ? " from above" : " from below");
-    }
+    WholeCounts whole = CountWhole(this->GetDevice(), grid, { { &solid.mesh } }, settings);
+    EXPECT_EQ(whole.windings[0].oddSamples, 0u);
+    first = first.empty() ? whole.counts[0] : first;
+    EXPECT_TRUE(whole.counts[0] == first) << "axis " << settings.columnAxis;
   }
   const double volume =
     std::accumulate(first.begin(), first.end(), 0.0) / (64.0 * UnitsOfSample(4)) * grid.VoxelVolume();

@@ -95,7 +95,6 @@ TEST_F(VoxelizedPartsTest, MayRunTheirColumnsEachWay)
   {
     RefractiveMediumSettings settings = SettingsFor(3, 2);
     settings.voxelization.columnAxis = axis;
-    settings.voxelization.fromAbove = axis == 1;
     this->ExpectBlocks(settings, BlockPartition::Even(Box, 5).blocks);
   }
 }

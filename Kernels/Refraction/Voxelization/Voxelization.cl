@@ -87,23 +87,18 @@ inline uint weight_of(int sample)
 }
 #endif
 
-inline void mark_crossing(
-  __global uint* column, __global uint* sum, int before, int samples, int leaving, int from_above)
+inline void mark_crossing(__global uint* column, __global uint* sum, int before, int leaving)
 {
-#if WINDING
   if (before > 0)
   {
     const int sample = before - 1;
+#if WINDING
     atomic_add(column + sample / 4, (uint)leaving << (8 * (sample % 4)));
-  }
 #else
-  const int sample = from_above ? before : before - 1;
-  if (sample >= 0 && sample < samples)
-  {
     atomic_xor(column + sample / BITS, 1u << (sample % BITS));
     atomic_add(sum, (uint)leaving * weight_of(sample));
-  }
 #endif
+  }
 }
 
 // A triangle prepared for the columns of a tile, the rectangle of columns that one work-item processes. Its edge
@@ -176,14 +171,13 @@ inline void next_row(sheet* s)
 // Marks the crossings of triangles with the columns of their tiles, one tile per work-item.
 //   tiles          triangle, first column, first row, (number of columns << 16) | number of rows
 //   axis           axis of the columns
-//   from_above     1: a crossing toggles the samples after it instead of those before it; not used with WINDING
 //   pitch          distance of samples, in units of the lattice
 //   samples        number of samples per column
 //   sums           output: signed sum of the weights of each column's crossings, see fill_columns; not used with
 //                  WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
-  __global const int* triangles, int axis, int pitch, int samples, int from_above, SampleRows rows,
-  __global uint* marks, __global uint* sums)
+  __global const int* triangles, int axis, int pitch, int samples, SampleRows rows, __global uint* marks,
+  __global uint* sums)
 {
   const int id = get_global_id(0);
   if (id >= tileCount)
@@ -212,8 +206,7 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        mark_crossing(row + (ulong)i * rows.words, rowOfSums + i, samples_before(excess, s.step, samples), samples,
-          s.leaving, from_above);
+        mark_crossing(row + (ulong)i * rows.words, rowOfSums + i, samples_before(excess, s.step, samples), s.leaving);
       }
       v0 += s.e0.across;
       v1 += s.e1.across;
@@ -280,13 +273,12 @@ __kernel void find_windings(
 // sums are equal: that of the signed weights of the crossings, and that of the weights of the remaining marks with
 // alternating signs. Otherwise the sums differ, except by chance in one of 2^32 cases, since weights are random.
 //   columns   number of columns per row
-//   from_above  as in mark_crossings
 //   sums      output of mark_crossings
 //   sign      1; -1 if the mesh is inside out; 0 to skip the search for such columns
 //   odd       flags, from firstOdd on one per row of voxels of the grid: set if the row has such a column
 //   firstRow  index of the first row of columns
-__kernel void fill_columns(int columnCount, int columns, int words, int from_above, __global uint* marks,
-  __global const uint* sums, int sign, __global int* odd, int firstOdd, int firstRow)
+__kernel void fill_columns(int columnCount, int columns, int words, __global uint* marks, __global const uint* sums,
+  int sign, __global int* odd, int firstOdd, int firstRow)
 {
   const int id = get_global_id(0);
   if (id >= columnCount)
@@ -296,25 +288,8 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
   __global uint* column = marks + (ulong)id * words;
   uint carried = 0;
   uint sum = 0;
-  uint turn = from_above ? (uint)-1 : 1;
-  for (int w = 0; from_above && w < words; ++w)
-  {
-    uint bits = column[w];
-    for (uint rest = bits; rest != 0; rest &= rest - 1)
-    {
-      sum += turn * weight_of(w * BITS + popcount(~rest & (rest - 1)));
-      turn = -turn;
-    }
-    bits ^= bits << 1;
-    bits ^= bits << 2;
-    bits ^= bits << 4;
-    bits ^= bits << 8;
-    bits ^= bits << 16;
-    bits = (bits ^ carried) & ALL_BITS;
-    column[w] = bits;
-    carried = (bits >> (BITS - 1)) != 0 ? ALL_BITS : 0;
-  }
-  for (int w = words - 1; !from_above && w >= 0; --w)
+  uint turn = 1;
+  for (int w = words - 1; w >= 0; --w)
   {
     uint bits = column[w];
     for (uint rest = bits; rest != 0;)

@@ -58,12 +58,10 @@ class CrossingMarker
 public:
   /// Compiles the kernel mark_crossings.
   /// @param words      number of 32-bit words per column
-  /// @param fromAbove  whether a crossing toggles the samples after it instead of those before it
-  CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options)
+  CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options)
     : TheDevice(device)
     , Columns(columns)
     , Words(words)
-    , FromAbove(fromAbove)
     , Kernel(device.Kernel("mark_crossings", kernel_source::Voxelization, options))
   {
   }
@@ -83,8 +81,7 @@ public:
     }
     With(this->Kernel, static_cast<cl_int>(tiles.size()), this->Tiles.Upload(this->TheDevice, tiles), mesh.Points(),
       mesh.Triangles(), this->Columns.axis, this->Columns.pitch, this->Columns.samples,
-      static_cast<cl_int>(this->FromAbove), SampleRows{ {}, this->Words, this->Columns.count[0], firstRow, 0, 0 },
-      marks, sums);
+      SampleRows{ {}, this->Words, this->Columns.count[0], firstRow, 0, 0 }, marks, sums);
     RunCrossings(this->TheDevice, this->Kernel, tiles.size());
   }
 
@@ -92,7 +89,6 @@ private:
   Device& TheDevice;
   SampleColumns Columns;
   int Words;
-  bool FromAbove;
   cl::Kernel Kernel;
   TilesOnDevice Tiles;
 };
@@ -149,7 +145,7 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
   const int atOnce = static_cast<int>(std::clamp<std::size_t>(
     WindingBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));
   const std::string options = CrossingOptions(columns.samplesOfVoxel, true);
-  CrossingMarker marker(device, columns, words, false, options);
+  CrossingMarker marker(device, columns, words, options);
   cl::Kernel find = device.Kernel("find_windings", kernel_source::Voxelization, options);
   Buffer<cl_uint> marks(device, across * atOnce * words, "crossings of the mesh");
   Buffer<cl_uint> noSums(device, 0, "no sums");
@@ -374,8 +370,7 @@ public:
     , Columns(TheGrid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
     , Words(WordsOf(TheGrid, settings.columnAxis, 32 / settings.samples))
     , Rows(RowsOfSlab(this->Columns, TheGrid, this->Words, settings.slabBytes))
-    , FromAbove(settings.fromAbove)
-    , Marker(device, this->Columns, this->Words, settings.fromAbove, CrossingOptions(settings.samples, false))
+    , Marker(device, this->Columns, this->Words, CrossingOptions(settings.samples, false))
     , Fill(device.Kernel("fill_columns", kernel_source::Voxelization, CrossingOptions(settings.samples, false)))
     , Count(device.Kernel("count_samples", kernel_source::Voxelization, CrossingOptions(settings.samples, false)))
     , Oriented(meshes)
@@ -470,7 +465,7 @@ private:
       this->Marker.Mark(this->Meshes[m], slab.firstRow, slab.endRow, this->Bits, this->Sums);
       const int columns = this->Columns.count[0] * (slab.endRow - slab.firstRow);
       const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up];
-      With(this->Fill, columns, this->Columns.count[0], this->Words, this->FromAbove, this->Bits, this->Sums,
+      With(this->Fill, columns, this->Columns.count[0], this->Words, this->Bits, this->Sums,
         this->Oriented[m].orientation, this->Odd, firstOdd, slab.firstRow);
       RunCrossings(this->TheDevice, this->Fill, static_cast<std::size_t>(columns));
       if (this->Fractions)
@@ -519,7 +514,6 @@ private:
   SampleColumns Columns;
   int Words; ///< number of 32-bit words per column of samples
   int Rows;  ///< number of rows of voxels that are processed at a time (a slab)
-  cl_int FromAbove;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
   std::vector<OrientedMesh> Oriented;

@@ -39,7 +39,6 @@ struct VoxelizationSettings
 
   /// Axis of the columns of samples, 0, 1 or 2. The choice does not change a bit of the result.
   int columnAxis = 0;
-  bool fromAbove = false; ///< whether a crossing toggles the samples after it and not those before it; same result
 
   /// Maximum memory of a slab, bytes. A slab is the part of the fine grid that is processed at a time, with one bit per
   /// sample; it has at least one layer of voxels.
