@@ -277,8 +277,8 @@ bool vtkLitVolumeMapper::HasScalarsToLight()
     !tyndall::ChosenArray(this->RayCaster, 1, image, "sigma_s");
 }
 
-/// Lights scalars by the lights and the environment of the ray caster. If it has no lights, those of the renderer are
-/// used, and the ray caster has them as well.
+/// Lights scalars by the lights and the environment of the ray caster, on its device. If it has no lights, those of the
+/// renderer are used, and the ray caster has them as well.
 void vtkLitVolumeMapper::ConnectLights()
 {
   using Port = vtkMediumRayCaster::InputPorts;
@@ -291,6 +291,8 @@ void vtkLitVolumeMapper::ConnectLights()
   solver->SetEnvironmentConnection(this->RayCaster->GetInputConnection(Port::ENVIRONMENT, 0));
   solver->SetEnvironmentUp(this->RayCaster->GetEnvironmentUp());
   solver->SetEnvironmentAzimuth(this->RayCaster->GetEnvironmentAzimuth());
+  solver->SetDevice(this->RayCaster->GetDevice());
+  solver->SetMemoryBudget(this->RayCaster->GetMemoryBudget());
 }
 
 /// Connection of the medium with its light: the input, or what is made of its scalars.

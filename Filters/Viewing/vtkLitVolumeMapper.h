@@ -78,8 +78,9 @@ public:
   ///@}
 
   ///@{
-  /// The filters that make medium and light for LightScalars, to set ColorMeans, MeanCosine, Tolerance and
-  /// so on. Inputs, VolumeProperty and UseTransferFunctions are set by the mapper.
+  /// The filters that make medium and light for LightScalars, to set ColorMeans, MeanCosine, Tolerance and so on. The
+  /// mapper sets inputs, VolumeProperty and UseTransferFunctions; device, memory budget and orientation of the
+  /// environment are those of RayCaster.
   vtkParticipatingMedium* GetMedium();
   vtkLightPropagationMaps* GetSolver();
   ///@}

@@ -75,6 +75,12 @@ shown.ScalarOpacityUnitDistance = medium.ScalarOpacityUnitDistance = 2.5
 thin = lit_view.drawn(view)
 assert difference(thin, lit) > 20
 lit_view.check_same(thin, lit_view.cast(solved, view))
+sky = EnvironmentReader(FileName=os.path.join(os.environ["TYNDALL_SOURCE"], "Data/Scenes/sky.hdr"))
+shown.Environment = solved.Environment = sky
+bright = lit_view.drawn(view)
+assert bright.mean() > 1.05 * thin.mean(), (bright.mean(), thin.mean())
+lit_view.check_same(bright, lit_view.cast(solved, view))
+shown.Environment = solved.Environment = None
 shown.ColorMeans = medium.ColorMeans = "Emission"
 lit_view.check_same(lit_view.drawn(view), lit_view.cast(solved, view))
 shown.ColorMeans = "Albedo"
