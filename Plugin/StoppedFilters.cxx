@@ -4,9 +4,12 @@
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
+#include "vtkSMOutputPort.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
 
 #include <QAbstractButton>
 #include <QApplication>
@@ -40,10 +43,13 @@ QString NameOf(vtkSMProxy* proxy)
   return proxy->GetSessionProxyManager()->GetProxyName("sources", proxy);
 }
 
+/// The Properties panel shows the active source, of which one output port may be what is active.
 bool IsOnPanel(vtkSMProxy* proxy)
 {
-  QWidget* const heading = FindWidget("pqExpanderButton", "PropertiesButton");
-  return heading && heading->property("text").toString().endsWith("(" + NameOf(proxy) + ")");
+  vtkSMProxySelectionModel* const active = proxy->GetSessionProxyManager()->GetSelectionModel("ActiveSources");
+  vtkSMProxy* const current = active ? active->GetCurrentProxy() : nullptr;
+  auto* const port = vtkSMOutputPort::SafeDownCast(current);
+  return current && (port ? port->GetSourceProxy() : current) == proxy;
 }
 
 bool AppliesByItself(vtkSMProxy* proxy)
