@@ -329,7 +329,7 @@ private:
         all += escaped[c];
       }
       const double factor = all > 1e-30 ? this->Emitted[c] / all : 0.0;
-      this->Tally.onTheWay[c] += this->Emitted[c] - factor * all;
+      this->Tally.onTheWay[c] += factor > 0.0 ? 0.0 : this->Emitted[c];
       for (int face = 0; face < 6; ++face)
       {
         this->Tally.out[face][c] += factor * this->Escaped[face][c];
