@@ -92,9 +92,13 @@ public:
   }
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
-  /// Does nothing, because no light is kept for the next sweep: each sweep follows light around periodic axes until at
-  /// most the fraction WrappedLeft is in transit, or for MostLaps laps.
-  void Forget() override {}
+  void Forget() override
+  {
+    for (const std::unique_ptr<Channel>& channel : this->Channels)
+    {
+      channel->sweep->Forget();
+    }
+  }
 
 private:
   /// Sweep of one channel, and its light by cell of the box's faces.
@@ -105,8 +109,10 @@ private:
   };
   void MakeChannel(int channel);
   void LoadFunctions(const AngularValues& angular);
-  FacePowers SweepChannel(
+  FacePowers SweepOnce(
     int channel, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor);
+  FacePowers SweepChannel(
+    int channel, const Buffer<float>* source, const IncomingRadiance& incoming, const Monitor& monitor);
   /// Whether voxels or faces may emit light along any direction of a sweep, in addition to its boundary source.
   bool ShinesEverywhere(const Buffer<float>* source) const
   {
@@ -230,10 +236,10 @@ void OrdinatesTransport::Gather(int c) const
   }
 }
 
-/// Sweeps a channel once, and adds its light to the deposit. Collective.
+/// Sweeps a channel once. Collective.
 /// @param source  as for Apply()
 /// @param onlyWraps  as in OrdinateArrays
-FacePowers OrdinatesTransport::SweepChannel(
+FacePowers OrdinatesTransport::SweepOnce(
   int c, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor)
 {
   const TransportParts& parts = this->Parts;
@@ -253,10 +259,60 @@ FacePowers OrdinatesTransport::SweepChannel(
   const OrdinateArrays arrays = { this->Radiance, parts.OnDevice.SigmaT(), this->Nothing, &sums, onlyWraps };
   const VoxelBox& box = this->Request.box;
   OrdinateSweep& sweep = *this->Channels[c]->sweep;
-  const FacePowers powers = box.VoxelCount() == 0 ? sweep.Apply(arrays, incoming, everywhere, monitor)
-                                                  : static_cast<UpwindSweep&>(sweep).ApplyWithin(box, arrays, monitor);
-  parts.TheDomain().Collective([&] { this->Gather(c); });
-  return powers;
+  return box.VoxelCount() == 0 ? sweep.Apply(arrays, incoming, everywhere, monitor)
+                               : static_cast<UpwindSweep&>(sweep).ApplyWithin(box, arrays, monitor);
+}
+
+/// Sweeps a channel, in laps around periodic axes until at most the fraction WrappedLeft of the light that wraps in the
+/// first lap is in transit, and adds its light to the deposit. By mean chords, a lap carries on the light that wrapped
+/// in the last one, and the light of all laps is added. Diamond differences are not linear where radiance would be
+/// negative, as beside a periodic face without incident light: each lap therefore sweeps all light again, together with
+/// what wrapped in the last lap, and only the light of the final lap counts. Collective.
+/// @param source  as for Apply()
+FacePowers OrdinatesTransport::SweepChannel(
+  int c, const Buffer<float>* source, const IncomingRadiance& incoming, const Monitor& monitor)
+{
+  const Domain& domain = this->Parts.TheDomain();
+  const Monitor ofLaps = monitor ? Monitor([&](double) { return monitor(1.0); }) : Monitor();
+  const bool repeats = this->ByDiamonds && this->Parts.Problem.Settings().IsPeriodic();
+  const Buffer<float>* const cells = repeats ? this->Request.deposit.faceOut : nullptr;
+  Buffer<float> before;
+  FacePowers sum;
+  double left = 0.0, wraps = 0.0; // power that the next lap would add
+  for (int lap = 0; lap == 0 || (lap < this->Laps && left > WrappedLeft * wraps); ++lap)
+  {
+    const bool first = lap == 0, all = first || this->ByDiamonds;
+    domain.Collective([&] {
+      if (cells && first)
+      {
+        before = Buffer<float>(this->Parts.TheDevice, cells->Read(), "light by cells");
+      }
+      else if (cells)
+      {
+        cells->CopyFrom(before, 0, before.Size());
+      }
+    });
+    const FacePowers powers =
+      this->SweepOnce(c, all ? source : nullptr, all ? incoming : IncomingRadiance(), !all, first ? monitor : ofLaps);
+    left = this->ByDiamonds ? std::abs(powers.onTheWay - sum.onTheWay) : powers.onTheWay;
+    wraps = first ? left : wraps;
+    for (int face = 0; face < 6; ++face)
+    {
+      sum.in[face] = powers.in[face] + (this->ByDiamonds ? 0.0 : sum.in[face]);
+      sum.out[face] = powers.out[face] + (this->ByDiamonds ? 0.0 : sum.out[face]);
+    }
+    sum.onTheWay = powers.onTheWay;
+    if (!this->ByDiamonds)
+    {
+      domain.Collective([&] { this->Gather(c); });
+    }
+  }
+  if (this->ByDiamonds)
+  {
+    domain.Collective([&] { this->Gather(c); });
+    sum.onTheWay = left;
+  }
+  return sum;
 }
 
 SweepTally OrdinatesTransport::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
@@ -266,22 +322,14 @@ SweepTally OrdinatesTransport::Apply(const Buffer<float>* source, const SweepBou
   for (int c = 0; c < channels; ++c)
   {
     const IncomingRadiance incoming = [&](int d, int face) { return boundary(this->Ordinates.index[d], face)[c]; };
-    const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels);
-    const Monitor ofLaps = ofChannel ? Monitor([&](double) { return ofChannel(1.0); }) : Monitor();
-    double wraps = 0.0;
-    for (int lap = 0; lap == 0 || (lap < this->Laps && tally.onTheWay[c] > WrappedLeft * wraps); ++lap)
+    const FacePowers powers = this->SweepChannel(c, source, boundary ? incoming : IncomingRadiance(),
+      OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels));
+    for (int face = 0; face < 6; ++face)
     {
-      const bool first = lap == 0;
-      const FacePowers powers = this->SweepChannel(c, first ? source : nullptr,
-        first && boundary ? incoming : IncomingRadiance(), !first, first ? ofChannel : ofLaps);
-      for (int face = 0; face < 6; ++face)
-      {
-        tally.in[face][c] += powers.in[face];
-        tally.out[face][c] += powers.out[face];
-      }
-      tally.onTheWay[c] = powers.onTheWay;
-      wraps = first ? powers.onTheWay : wraps;
+      tally.in[face][c] = powers.in[face];
+      tally.out[face][c] = powers.out[face];
     }
+    tally.onTheWay[c] = powers.onTheWay;
   }
   return tally;
 }

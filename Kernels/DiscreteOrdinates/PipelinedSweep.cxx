@@ -245,6 +245,15 @@ void PipelinedSweep::GiveTo(const Octant& octant, int number)
   std::for_each(octant.aroundTo.begin(), octant.aroundTo.end(), give);
 }
 
+void PipelinedSweep::Forget()
+{
+  for (Octant& octant : this->Octants)
+  {
+    octant.waiting.assign(octant.aroundFrom.size(), {});
+  }
+  this->Sweep.Forget();
+}
+
 FacePowers PipelinedSweep::Apply(
   const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool, const Monitor& monitor)
 {

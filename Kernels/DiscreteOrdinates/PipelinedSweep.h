@@ -61,6 +61,7 @@ public:
   /// @throws on every rank if any rank throws
   FacePowers Apply(
     const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
+  void Forget() override;
 
 private:
   struct Octant

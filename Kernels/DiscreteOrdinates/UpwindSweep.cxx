@@ -185,6 +185,17 @@ FacePowers UpwindSweep::Apply(
   return powers;
 }
 
+void UpwindSweep::Forget()
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (this->At.periodic[axis])
+    {
+      this->Faces[axis].Fill(0.0f);
+    }
+  }
+}
+
 FacePowers UpwindSweep::ApplyWithin(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor)
 {
   FacePowers powers;

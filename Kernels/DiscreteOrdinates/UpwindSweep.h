@@ -64,6 +64,8 @@ public:
   /// @return outgoing power before reflection, and incident power of the boundary source
   virtual FacePowers Apply(
     const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) = 0;
+  /// Discards the light that wraps around periodic axes in the next sweep.
+  virtual void Forget() = 0;
 };
 
 /// Light of one channel in each cell of the box's faces: the arrays FaceLight::Out() and In().
@@ -108,6 +110,7 @@ public:
 
   FacePowers Apply(
     const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
+  void Forget() override;
   /// Fraction of the groups of directions that carry incident light.
   double LitPart(const IncomingRadiance& incoming) const;
 

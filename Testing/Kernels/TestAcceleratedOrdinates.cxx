@@ -192,6 +192,36 @@ TEST_F(AcceleratedOrdinates, FillAFurnaceWithFacesThatReflect)
   }
 }
 
+/// Light that wraps around an axis was swept without the light that it meets, where diamond differences are not linear:
+/// 0.9% above.
+TEST_F(AcceleratedOrdinates, FillAPeriodicFurnace)
+{
+  for (const bool reflects : { false, true })
+  {
+    for (const bool both : { false, true })
+    {
+      LitMedium furnace({ 9, 9, 9 }, 0.15f, 0.15f);
+      furnace.emission = furnace.sigma_a;
+      furnace.ShineFromEverywhere(1.0);
+      if (reflects)
+      {
+        furnace.ShineFromEverywhere(0.0);
+        MakeReflectingFurnace(furnace, 3.0, 0.9, Grey(1.0));
+      }
+      furnace.how.periodic = { true, both, false };
+      furnace.how.tolerance = 1e-6;
+      for (int face = 0; face < (both ? 4 : 2); ++face)
+      {
+        furnace.light.faceAlbedo[face] = furnace.light.faces[face] = {};
+      }
+      const LightField light = furnace.SolveOrdinates(this->GetDevice());
+      EXPECT_THAT(light.leftOut, testing::Not(Contains(std::string(left_out::Acceleration))));
+      EXPECT_LT(Deviation(light, Grey(1.0)), 1e-4) << reflects << both;
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << reflects << both;
+    }
+  }
+}
+
 TEST_F(AcceleratedOrdinates, LightAPeriodicLayerAsLightPropagationMapsDo)
 {
   LitMedium layer({ 12, 12, 12 });
