@@ -111,6 +111,7 @@ __kernel void join_down(
 
 // Copies rows of `count` voxels. Rows are from_row voxels apart in the source and to_row voxels apart in the copy,
 // whose padding repeats the last voxel. The layout changes from [voxel][batch][channel] to [batch][voxel][channel].
+// There are 1 or 3 channels; with a loop over them, code that PoCL 7.1 makes writes past the end of the copy.
 __kernel void copy_rows(
   const __global float* from, int count, int from_row, __global float* to, int to_row, int batches, int channels)
 {
@@ -121,9 +122,12 @@ __kernel void copy_rows(
     __global float* out = to + (b * rows + row) * to_row * channels;
     for (int x = 0; x < to_row; ++x)
     {
-      for (int c = 0; c < channels; ++c)
+      const int to_x = x * channels, from_x = (min(x, count - 1) * batches + b) * channels;
+      out[to_x] = values[from_x];
+      if (channels > 1)
       {
-        out[x * channels + c] = values[(min(x, count - 1) * batches + b) * channels + c];
+        out[to_x + 1] = values[from_x + 1];
+        out[to_x + 2] = values[from_x + 2];
       }
     }
   }
