@@ -212,10 +212,12 @@ void RadianceIsReadInItsUnit(test::Claims& claims)
   WriteBytes(Path("exposed.hdr"), SmallHdr("EXPOSURE=2\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 4.0\n"));
   claims.Near(Value(reading.Of(Path("exposed.hdr")), 5, 3, 0), (133.5) / 128 / 8, 1e-6, "exposures are divided out");
   vtkNew<vtkHDRReader> ofVtk; // where this fails, try whether it serves for .hdr
+  test::Errors ofReader(ofVtk);
   ofVtk->SetFileName(Path("exposed.hdr").c_str());
   ofVtk->Update();
-  claims.That(ofVtk->GetOutput()->GetPointData()->GetScalars()->GetComponent(5 + 16 * 3, 0) > 1.5 * 133.5 / 128 / 8,
-    "VTK's own reader loses all exposures but the last");
+  claims.That(!ofReader.None() ||
+      ofVtk->GetOutput()->GetPointData()->GetScalars()->GetComponent(5 + 16 * 3, 0) > 1.5 * 133.5 / 128 / 8,
+    "VTK's own reader loses all exposures but the last, or refuses the file");
   WriteBytes(Path("turned.hdr"), SmallHdr("FORMAT=32-bit_rle_rgbe\n", "-X 4 +Y 16\n"));
   vtkImageData* turned = reading.Of(Path("turned.hdr"));
   claims.That(turned->GetDimensions()[0] == 4 && turned->GetDimensions()[1] == 16, "a turned picture's size");
