@@ -212,7 +212,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   CheckOrdinates(domain, medium, illumination, settings, kept != nullptr);
   const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
   std::optional<LightField> swept =
-    SolveBySweptOrdinates(device, { domain, medium, illumination }, settings, problem, monitor, kept);
+    SolveBySweptOrdinates(device, { domain, medium, illumination, {}, kept }, settings, problem, monitor);
   if (swept)
   {
     return std::move(*swept);

@@ -1,9 +1,12 @@
 #include "DiscreteOrdinates/OrdinatesTransport.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/PipelinedSweep.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "Light/ChannelReduction.h"
+#include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Conservative/OrderSweeps.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
@@ -445,6 +448,22 @@ struct SweptProblem
   const PropagationProblem* problem = nullptr; ///< null: it is not solved by SolveBySweptOrdinates()
   IterationScheme how = IterationScheme::SourceIteration;
 };
+
+/// Whether a channel alone is solved otherwise than all channels together: by another iteration scheme, or in moments
+/// of another degree. Both change the light of optically thick voxels, and the light of a channel must not depend on
+/// the other channels. Collective.
+bool ChannelsDiffer(
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const SweptProblem& all, int channels)
+{
+  const auto differ = [&](int c) {
+    const OneChannelScene one(scene.medium, scene.illumination, c);
+    const PropagationProblem even(scene.domain, one.medium, one.light, AsPropagation(settings));
+    const SweptProblem swept(device, { scene.domain, one.medium, one.light }, settings, even);
+    return swept.how != all.how || !swept.problem != !all.problem ||
+      (all.problem && swept.problem->Scattering().Degree() != all.problem->Scattering().Degree());
+  };
+  return channels > 1 && (differ(0) || differ(1) || differ(2));
+}
 }
 
 bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings)
@@ -455,14 +474,21 @@ bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSett
 }
 
 std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
-  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept)
+  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor)
 {
   const SweptProblem swept(device, scene, settings, even);
+  if (ChannelsDiffer(device, scene, settings, swept, even.Channels()))
+  {
+    return SolveEachColour(scene, monitor, [&](const SceneBlock& one, const Monitor& ofOne) {
+      return SolveDiscreteOrdinates(device, one.domain, one.medium, one.illumination, settings, ofOne, one.kept);
+    });
+  }
   if (!swept.problem)
   {
     return {};
   }
   scene.domain.Collective([&] { CheckMemoryOf(device, *swept.problem, swept.how); });
-  return SolveBySweeps(device, *swept.problem, scene.illumination, swept.how, monitor, kept, TransportByOrdinates);
+  return SolveBySweeps(
+    device, *swept.problem, scene.illumination, swept.how, monitor, scene.kept, TransportByOrdinates);
 }
 }

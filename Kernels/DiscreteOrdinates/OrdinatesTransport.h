@@ -28,7 +28,7 @@ bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 /// @return no value if the scene is to be solved by source iteration on the radiance of all directions (SweptOrders)
 ///   instead
 std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
-  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept);
+  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor);
 
 /// Whether SolveDiscreteOrdinates() accelerates the solve of a scene. Collective.
 bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings);

@@ -26,6 +26,11 @@ struct TargetLight
 LightField SolveColours(const SceneBlock& scene, const Monitor& monitor,
   const std::function<LightField(const SceneBlock&, const Monitor&)>& solve);
 
+/// Solves a scene of three channels, each channel as a scene of its own. Collective.
+/// @param solve  as for SolveColours()
+LightField SolveEachColour(const SceneBlock& scene, const Monitor& monitor,
+  const std::function<LightField(const SceneBlock&, const Monitor&)>& solve);
+
 /// The light of a search for a target error, with its members `solves` and `settingsUsed` set.
 /// @param settings  settings of the final solve, as texts "Name = value"; VoxelsDividedBy is appended
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings);
