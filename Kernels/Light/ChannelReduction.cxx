@@ -353,6 +353,8 @@ LightField JoinChannels(std::vector<LightField> channels)
     }
   }
   light.lampsApart = std::move(lamps);
+  std::vector<std::string>& omitted = light.leftOut;
+  omitted.erase(std::remove(omitted.begin(), omitted.end(), left_out::Grey), omitted.end()); // of each channel alone
   return light;
 }
 

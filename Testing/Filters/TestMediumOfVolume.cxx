@@ -297,7 +297,8 @@ void WhatIsNotSupportedIsSaid(test::Claims& claims)
     medium.filter->Update();
     claims.That(errors.WasOneWith(what), std::string("one error says: ") + what);
   };
-  says("s", "two dimensions", [](MediumOfVolume& medium) { medium.property->SetTransferFunctionModeTo2D(); });
+  says("s", "two dimensions",
+    [](MediumOfVolume& medium) { medium.property->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); });
   says("s", "gradient opacity", [](MediumOfVolume& medium) { medium.property->SetGradientOpacity(medium.opacity); });
   says("s", "unit distance", [](MediumOfVolume& medium) { medium.property->SetScalarOpacityUnitDistance(0.0); });
   says("v", "3 components", [](MediumOfVolume& medium) { medium.property->IndependentComponentsOff(); });

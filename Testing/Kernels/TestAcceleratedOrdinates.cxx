@@ -20,6 +20,7 @@
 
 using namespace tyndall;
 using testing::Contains;
+using testing::Not;
 
 namespace
 {
@@ -264,6 +265,7 @@ TEST_F(AcceleratedOrdinates, HaveTheSameColourAloneAndBesideOthers)
   {
     const LightField all = solve({ 0, 1, 2 }, g);
     ASSERT_EQ(all.channels, 3);
+    EXPECT_THAT(all.leftOut, Not(Contains(left_out::Grey)));
     for (int c = 0; c < 3; ++c)
     {
       const LightField one = solve({ c }, g);

@@ -273,14 +273,17 @@ struct ChannelProblem
 
 /// The channels of a scene, to be solved one by one, if the iteration scheme or the degree of angular moments chosen
 /// for a single channel differs from that chosen for all together. Both change the light of optically thick voxels, and
-/// the light of a channel must not depend on the other channels. Empty: all channels are solved together. Collective.
+/// the light of a channel must not depend on the other channels. If the phase function is isotropic, the difference is
+/// small (numerics.md, "Channels"), and channels are solved together. Empty: all channels are solved together.
+/// Collective.
 std::vector<std::unique_ptr<ChannelProblem>> UnlikeChannels(Device& device, const PropagationProblem& all,
   IterationScheme how, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
   const Domain& domain)
 {
   std::vector<std::unique_ptr<ChannelProblem>> channels;
   bool differ = false;
-  for (int c = 0; c < all.Channels() && all.Channels() > 1; ++c)
+  const bool may = all.Channels() > 1 && domain.Any(!domain.IsEmpty() && !medium.phase.IsIsotropic());
+  for (int c = 0; c < all.Channels() && may; ++c)
   {
     channels.push_back(std::make_unique<ChannelProblem>(device, domain, medium, illumination, c, settings));
     const ChannelProblem& one = *channels.back();
