@@ -363,6 +363,28 @@ void KeepOneChannel(std::vector<float>& interleaved)
   KeepOne(interleaved, 1);
 }
 
+LightField SolveOneByOne(const Monitor& monitor, KeptLight* kept,
+  const std::function<LightField(int channel, const Monitor& monitor, KeptLight* kept)>& solve)
+{
+  constexpr int count = static_cast<int>(Three);
+  KeptLight all;
+  all.channels = kept ? std::move(kept->channels) : std::vector<KeptLight>();
+  all.channels.resize(Three);
+  std::vector<LightField> found;
+  for (int c = 0; c < count; ++c)
+  {
+    KeptLight& ofChannel = all.channels[c];
+    found.push_back(
+      solve(c, OfPart(monitor, static_cast<double>(c) / count, (c + 1.0) / count), kept ? &ofChannel : nullptr));
+    all.firstScattered[c] = ofChannel.firstScattered[0];
+  }
+  if (kept)
+  {
+    *kept = std::move(all);
+  }
+  return JoinChannels(std::move(found));
+}
+
 void KeepOneChannel(LightField& light)
 {
   light.channels = 1;

@@ -1,8 +1,12 @@
 #pragma once
 
-#include "Light/LightField.h"
+#include "Device/Monitor.h"
+#include "Light/KeptLight.h"
 #include "Lights/Lights.h"
 #include "Medium/Traits.h"
+
+#include <functional>
+#include <vector>
 
 namespace tyndall
 {
@@ -54,6 +58,12 @@ void Spread(LightField& light, const Rgb& colour);
 /// as moment of degree 0, which includes the light first scattered from lamps. Surface radiance is NaN in channels that
 /// do not have it.
 LightField JoinChannels(std::vector<LightField> channels);
+
+/// Solves the three channels of a scene one after the other, and joins their light (JoinChannels).
+/// @param kept  light of the last solve by channel, which is replaced (KeptLight::channels); null: none
+/// @param solve  solves one channel with its part of the progress and of the kept light, null if `kept` is null
+LightField SolveOneByOne(const Monitor& monitor, KeptLight* kept,
+  const std::function<LightField(int channel, const Monitor& monitor, KeptLight* kept)>& solve);
 
 /// Reduces light of three equal channels to one channel.
 void KeepOneChannel(LightField& light);

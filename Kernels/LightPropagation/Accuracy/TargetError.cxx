@@ -357,29 +357,13 @@ LightField SolveColours(const SceneBlock& scene, const Monitor& monitor,
 LightField SolveEachColour(const SceneBlock& scene, const Monitor& monitor,
   const std::function<LightField(const SceneBlock&, const Monitor&)>& solve)
 {
-  constexpr int Colours = 3;
-  if (scene.kept)
-  {
-    std::vector<KeptLight> kept = std::move(scene.kept->channels);
-    kept.resize(Colours);
-    *scene.kept = {};
-    scene.kept->channels = std::move(kept);
-  }
-  std::vector<LightField> channels;
-  for (int c = 0; c < Colours; ++c)
-  {
+  int solves = 0;
+  LightField light = SolveOneByOne(monitor, scene.kept, [&](int c, const Monitor& ofColour, KeptLight* kept) {
     const OneChannelScene one(scene.medium, scene.illumination, c);
-    channels.push_back(
-      solve({ scene.domain, one.medium, one.light, scene.index, scene.kept ? &scene.kept->channels[c] : nullptr },
-        OfPart(monitor, c / 3.0, (c + 1) / 3.0)));
-    if (scene.kept)
-    {
-      scene.kept->firstScattered[c] = scene.kept->channels[c].firstScattered[0];
-    }
-  }
-  const int solves = std::accumulate(
-    channels.begin(), channels.end(), 0, [](int sum, const LightField& channel) { return sum + channel.solves; });
-  LightField light = JoinChannels(std::move(channels));
+    LightField found = solve({ scene.domain, one.medium, one.light, scene.index, kept }, ofColour);
+    solves += found.solves;
+    return found;
+  });
   light.solves = solves;
   return light;
 }

@@ -296,31 +296,6 @@ std::vector<std::unique_ptr<ChannelProblem>> UnlikeChannels(Device& device, cons
   return channels;
 }
 
-/// Solves the channels of a scene one after the other, and releases each afterwards.
-LightField SolveOneByOne(
-  Device& device, std::vector<std::unique_ptr<ChannelProblem>> channels, const Monitor& monitor, KeptLight* kept)
-{
-  std::vector<KeptLight> keptOfChannels = kept ? std::move(kept->channels) : std::vector<KeptLight>();
-  keptOfChannels.resize(channels.size());
-  std::vector<LightField> found;
-  Rgb firstScattered = {};
-  for (std::size_t c = 0; c < channels.size(); ++c)
-  {
-    const Monitor part = OfPart(monitor, static_cast<double>(c) / channels.size(), (c + 1.0) / channels.size());
-    const std::unique_ptr<ChannelProblem> channel = std::move(channels[c]);
-    found.push_back(SolveBySweeps(
-      device, channel->problem, channel->scene.light, channel->how, part, kept ? &keptOfChannels[c] : nullptr));
-    firstScattered[c] = keptOfChannels[c].firstScattered[0];
-  }
-  if (kept)
-  {
-    *kept = {};
-    kept->firstScattered = firstScattered;
-    kept->channels = std::move(keptOfChannels);
-  }
-  return JoinChannels(std::move(found));
-}
-
 /// Solves a scene by sweeps; its axes are already permuted for fast sweeps.
 LightField Solve(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
@@ -333,7 +308,10 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
     return SolveBySweeps(device, *problem, illumination, how, monitor, kept);
   }
   problem.reset();
-  return SolveOneByOne(device, std::move(channels), monitor, kept);
+  return SolveOneByOne(monitor, kept, [&](int c, const Monitor& part, KeptLight* ofChannel) {
+    const std::unique_ptr<ChannelProblem> channel = std::move(channels[c]); // released after its solve
+    return SolveBySweeps(device, channel->problem, channel->scene.light, channel->how, part, ofChannel);
+  });
 }
 }
 
