@@ -462,7 +462,7 @@ bool ChannelsDiffer(
     return swept.how != all.how || !swept.problem != !all.problem ||
       (all.problem && swept.problem->Scattering().Degree() != all.problem->Scattering().Degree());
   };
-  return channels > 1 && (differ(0) || differ(1) || differ(2));
+  return channels > 1 && IteratesAsMaps(settings, true) && (differ(0) || differ(1) || differ(2));
 }
 }
 
