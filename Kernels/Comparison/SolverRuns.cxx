@@ -75,7 +75,7 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings, int terms)
   as.tolerance = settings.tolerance;
   as.periodic = settings.periodic;
   as.terms = terms > 0 ? terms : as.terms;
-  for (int degree = 4; as.terms > 6 * as.directionsPerFace; --degree)
+  for (int degree = 4; !ResolvesTerms(settings, as.terms); --degree)
   {
     as.terms = degree * degree;
   }
