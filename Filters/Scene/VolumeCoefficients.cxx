@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Medium/Classification.h"
+#include "Numerics/Legendre.h"
 #include "Numerics/NumberText.h"
 #include "Numerics/Srgb.h"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace tyndall
@@ -188,9 +190,8 @@ public:
     this->IsEmission = appearance.colorIsEmission;
     const Functions functions(appearance.property, 0);
     this->Channels = !this->Direct && functions.IsGrey(ranges[0]) && IsGrey(appearance.g) ? 1 : 3;
-    this->Opacity.emplace_back(
-      [&](double scalar, double* value) { *value = ExtinctionAt(appearance, functions, scalar); }, 1,
-      functions.Nodes(ranges.back()));
+    this->Opacity.emplace([&](double scalar, double* value) { *value = ExtinctionAt(appearance, functions, scalar); },
+      1, functions.Nodes(ranges.back()));
     const auto meaning = [&](double scalar, double* values) {
       double rgb[3] = { scalar / 255.0, scalar / 255.0, scalar / 255.0 };
       if (!this->Direct)
@@ -202,8 +203,7 @@ public:
         values[c] = MeaningOf(appearance, rgb[c], c);
       }
     };
-    this->Meaning.emplace_back(
-      meaning, 3, this->Direct ? std::vector<double>{ 0.0, 255.0 } : functions.Nodes(ranges[0]));
+    this->Meaning.emplace(meaning, 3, this->Direct ? std::vector<double>{ 0.0, 255.0 } : functions.Nodes(ranges[0]));
   }
 
   /// At least 1: a product of linear functions is not linear.
@@ -213,7 +213,7 @@ public:
     for (int i = 0; i < (this->Direct ? 4 : 2); ++i)
     {
       const bool isOpacity = i == (this->Direct ? 3 : 1);
-      kinks += (isOpacity ? this->Opacity[0] : this->Meaning[0]).NodesBetween(low[i], high[i]);
+      kinks += (isOpacity ? this->Opacity : this->Meaning)->NodesBetween(low[i], high[i]);
     }
     return kinks;
   }
@@ -221,31 +221,32 @@ public:
   /// Gauss quadrature of three points: the coefficients are products of functions of two components.
   void AddMean(const double* from, const double* to, double weight, double* sums) const override
   {
-    static const double points[3] = { 0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15) };
-    static constexpr double weights[3] = { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 };
+    static const GaussLegendre quadrature(3);
     const int last = this->Direct ? 3 : 1;
     const auto at = [&](int component, double part) {
       return from[component] + part * (to[component] - from[component]);
     };
-    for (int point = 0; point < 3; ++point)
+    for (std::size_t point = 0; point < quadrature.points.size(); ++point)
     {
       double extinction = 0.0, meaning[3] = {};
-      const double opaque = at(last, points[point]);
-      this->Opacity[0].AddMean(opaque, opaque, 1.0, &extinction);
+      const double part = 0.5 + 0.5 * quadrature.points[point];
+      const double opaque = at(last, part);
+      this->Opacity->AddMean(opaque, opaque, 1.0, &extinction);
       for (int c = 0; c < (this->Direct ? 3 : 1); ++c)
       {
-        const double color = at(c, points[point]);
+        const double color = at(c, part);
         double all[3] = {};
-        this->Meaning[0].AddMean(color, color, 1.0, all);
+        this->Meaning->AddMean(color, color, 1.0, all);
         std::copy(all + c, all + 3, meaning + c);
       }
-      Write(*this, extinction, meaning, weight * weights[point], sums);
+      Write(*this, extinction, meaning, 0.5 * weight * quadrature.weights[point], sums);
     }
   }
 
 private:
-  bool Direct;                                    ///< whether the first three components are the colour itself
-  std::vector<CoefficientTable> Opacity, Meaning; ///< one each: extinction; what the colour stands for, 3 values
+  bool Direct;                             ///< whether the first three components are the colour itself
+  std::optional<CoefficientTable> Opacity; ///< extinction
+  std::optional<CoefficientTable> Meaning; ///< what the colour stands for, 3 values
 };
 }
 

@@ -9,6 +9,7 @@
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 #include "vtkLightPropagationMaps.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkParticipatingMedium.h"
 #include "vtkPolyData.h"
@@ -35,11 +36,6 @@ Place Within(vtkMatrix4x4* toVolume, const double* position)
   return { within[0] / within[3], within[1] / within[3], within[2] / within[3] };
 }
 
-double Distance(const Place& from, const double* to)
-{
-  return std::sqrt(std::pow(to[0] - from[0], 2) + std::pow(to[1] - from[1], 2) + std::pow(to[2] - from[2], 2));
-}
-
 Light LightOf(vtkLight* light, vtkMatrix4x4* toVolume, const double centre[3])
 {
   double position[3], focus[3];
@@ -58,7 +54,7 @@ Light LightOf(vtkLight* light, vtkMatrix4x4* toVolume, const double centre[3])
     const double half = std::min(light->GetConeAngle(), 90.0) * Pi / 180.0;
     const bool isSpot = light->GetConeAngle() < 90.0;
     const double solidAngle = isSpot ? 2.0 * Pi * (1.0 - std::cos(half)) : 4.0 * Pi;
-    const double distance = Distance(made.position, centre);
+    const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(made.position.data(), centre));
     const double* const attenuation = light->GetAttenuationValues();
     factor *= solidAngle * distance * distance /
       (attenuation[0] + attenuation[1] * distance + attenuation[2] * distance * distance);
