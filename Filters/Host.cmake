@@ -193,7 +193,7 @@ if (wrapping)
     install(FILES "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}"
       DESTINATION "${python_destination}/tyndall" COMPONENT "python")
   endforeach ()
-  if (SKBUILD) # what is in the wheel, or compiled into it
+  if (SKBUILD) # licences of the libraries that the wheel contains
     foreach (package IN ITEMS libeigen3-dev libglm-dev libopenexr-dev libimath-dev ocl-icd-opencl-dev)
       install(FILES "/usr/share/doc/${package}/copyright"
         DESTINATION "tyndall/licenses" RENAME "${package}.txt" COMPONENT "python")

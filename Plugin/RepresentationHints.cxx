@@ -169,8 +169,9 @@ bool HasScalarsAlone(const Shown& shown)
   });
 }
 
-/// Colours a representation that becomes Lit Volume and is not coloured yet by the first array of points, or else of
-/// cells, and rescales the transfer functions to it, as ParaView does for Volume.
+/// If a representation becomes Lit Volume without being coloured, colours it by its first point array, or by its first
+/// cell array if it has no point arrays, and rescales the transfer functions to that array's range. ParaView does the
+/// same for Volume.
 void ColorScalars(vtkSMPVRepresentationProxy* representation)
 {
   vtkSMProperty* const chosen = representation->GetProperty("ColorArrayName");

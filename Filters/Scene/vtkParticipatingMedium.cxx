@@ -632,8 +632,7 @@ void vtkParticipatingMedium::MakeMedium(
   domain.Collective([&] {
     Require(!this->UseTransferFunctions || this->HasFunctions,
       "There are no transfer functions: color the input by an array as a Volume before UseTransferFunctions is "
-      "switched "
-      "on, or set LookupTable and ScalarOpacityFunction, or VolumeProperty.");
+      "switched on, or set LookupTable and ScalarOpacityFunction, or VolumeProperty.");
     recipe = RecipeOf(this, this->ChannelMeanCosines);
     std::vector<float> relative;
     if (pieces.HasOwn() || !pieces.IsDecomposed())
