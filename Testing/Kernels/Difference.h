@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Light/LightField.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,4 +65,16 @@ inline double RelativeRmse(const std::vector<float>& a, const std::vector<float>
     squares += std::pow(static_cast<double>(b[i]), 2);
   }
   return std::sqrt(squares > 0.0 ? differences / squares : differences);
+}
+
+/// Expects that a channel of the light of several has fluence and absorbed power of this channel alone, to 1e-4.
+inline void ExpectChannel(const tyndall::LightField& all, int channel, const tyndall::LightField& alone)
+{
+  ASSERT_EQ(all.fluence.size(), all.channels * alone.fluence.size());
+  const float largest = *std::max_element(alone.fluence.begin(), alone.fluence.end());
+  for (std::size_t i = 0; i < alone.fluence.size(); ++i)
+  {
+    ASSERT_NEAR(all.fluence[all.channels * i + channel] / largest, alone.fluence[i] / largest, 1e-4);
+  }
+  EXPECT_NEAR(all.balance.absorbed[channel] / alone.balance.absorbed[0], 1.0, 1e-4);
 }
